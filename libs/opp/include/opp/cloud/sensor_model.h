@@ -1,0 +1,38 @@
+// SPDX-FileCopyrightText: 2026 The opp-mapping authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "opp/params/field.h"
+
+#include <cmath>
+#include <string_view>
+
+namespace opp {
+
+/// Noise and range of the sensor; every threshold on distances and every weight follows from it.
+/// Defaults: Kinect-like structured light, σ(r) = √(a² + (b r²)²) with b = 1.5 mm/m² (disparity
+/// noise; Khoshelham & Oude Elberink, Sensors 2012, give 1.4 mm/m²).
+struct SensorModel {
+  static constexpr std::string_view kSection = "sensor";
+  double noise_constant = 0.001;    ///< a
+  double noise_quadratic = 0.0015;  ///< b
+  double min_range = 0.3;
+  double max_range = 6.0;
+
+  /// Standard deviation of a measured range [m].
+  double sigma(double range) const {
+    return std::hypot(noise_constant, noise_quadratic * range * range);
+  }
+
+  template <typename Self, typename F>
+  static void visit(Self&& p, F&& f) {
+    f(p.noise_constant,
+      Field{"noise_constant", "m", 1e-6, 1.0, "range noise at any range (standard deviation)"});
+    f(p.noise_quadratic,
+      Field{"noise_quadratic", "1/m", 0.0, 0.1, "range noise that grows with range squared"});
+    f(p.min_range, Field{"min_range", "m", 0.0, 100.0, "nearer returns are ignored"});
+    f(p.max_range, Field{"max_range", "m", 0.1, 1000.0, "farther returns are ignored"});
+  }
+};
+
+}  // namespace opp
