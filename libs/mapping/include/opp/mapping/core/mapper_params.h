@@ -1,0 +1,31 @@
+// SPDX-FileCopyrightText: 2026 The opp-mapping authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "opp/mapping/backend/backend_params.h"
+#include "opp/mapping/frontend/frontend_params.h"
+#include "opp/mapping/registration/registration_params.h"
+#include "opp/params/primitive_params.h"
+
+#include <utility>
+
+namespace opp::mapping {
+
+/// Parameters of all stages from rawlog to map.
+struct MapperParams {
+  PrimitiveParams primitives;
+  RegistrationParams registration;
+  FrontendParams frontend;
+  BackendParams backend;
+
+  /// Calls f(section) for each stage, in the order of the stages.
+  template <typename Self, typename F>
+  static void visitSections(Self&& p, F&& f) {
+    PrimitiveParams::visitSections(p.primitives, f);
+    f(p.registration);
+    f(p.frontend);
+    f(p.backend);
+  }
+};
+
+}  // namespace opp::mapping

@@ -1,0 +1,20 @@
+// SPDX-FileCopyrightText: 2026 The opp-mapping authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "opp/geometry/point_cloud.h"
+#include "opp/primitives/primitives.h"
+
+#include <cstddef>
+
+namespace opp::mapping {
+
+/// What mapping keeps of one scan: samples and primitives; raw points are gone.
+struct ScanFeatures {
+  double timestamp = 0.0;      ///< Unix time [s]
+  std::size_t scan_index = 0;  ///< position among the 3D observations of the rawlog
+  OrientedCloud cloud_in_body;
+  Primitives primitives_in_body;  ///< labels refer to the samples of cloud_in_body
+};
+
+}  // namespace opp::mapping

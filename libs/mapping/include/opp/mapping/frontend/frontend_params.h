@@ -1,0 +1,52 @@
+// SPDX-FileCopyrightText: 2026 The opp-mapping authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "opp/geometry/constants.h"
+#include "opp/params/field.h"
+
+#include <string_view>
+
+namespace opp::mapping {
+
+/// Parameters of pose prediction, tracking and the choice of keyframes.
+struct FrontendParams {
+  static constexpr std::string_view kSection = "frontend";
+  double acceleration = 1.5;
+  double angular_acceleration = 5.0;
+  double speed = 1.0;
+  double angular_speed = 1.5;
+  double odometry_noise_ratio = 0.05;
+  double odometry_noise_translation = 0.002;
+  double odometry_noise_rotation = degToRad(0.2);
+  double min_overlap = 0.3;
+  double keyframe_overlap = 0.8;
+  double keyframe_rotation = degToRad(25.0);
+  int local_keyframes = 15;
+
+  template <typename Self, typename F>
+  static void visit(Self&& p, F&& f) {
+    f(p.acceleration, Field{"acceleration", "m/s^2", 1e-3, 1e3,
+                            "typical change of speed of the body (standard deviation)"});
+    f(p.angular_acceleration,
+      Field{"angular_acceleration", "rad/s^2", 1e-3, 1e3, "typical change of turning rate"});
+    f(p.speed, Field{"speed", "m/s", 1e-3, 1e3, "typical speed, while no velocity is known"});
+    f(p.angular_speed, Field{"angular_speed", "rad/s", 1e-3, 1e3,
+                             "typical turning rate, while no velocity is known"});
+    f(p.odometry_noise_ratio, Field{"odometry_noise_ratio", "", 0.0, 1.0,
+                                    "odometry error over the distance and angle moved"});
+    f(p.odometry_noise_translation,
+      Field{"odometry_noise_translation", "m", 1e-6, 1.0, "odometry error of a step, at least"});
+    f(p.odometry_noise_rotation,
+      Field{"odometry_noise_rotation", "rad", 1e-6, 1.0, "odometry error of a step, at least"});
+    f(p.min_overlap, Field{"min_overlap", "", 0.0, 1.0,
+                           "a scan of which a smaller share agrees with the map is lost"});
+    f(p.keyframe_overlap, Field{"keyframe_overlap", "", 0.0, 1.0,
+                                "a scan of which a smaller share agrees becomes a keyframe"});
+    f(p.keyframe_rotation, Field{"keyframe_rotation", "rad", 0.01, 3.1415,
+                                 "and one that looks so much away from the last keyframe"});
+    f(p.local_keyframes, Field{"local_keyframes", "", 1, 1000, "keyframes in the local map"});
+  }
+};
+
+}  // namespace opp::mapping

@@ -1,0 +1,44 @@
+// SPDX-FileCopyrightText: 2026 The opp-mapping authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "opp/mapping/core/landmark_map.h"
+#include "opp/mapping/core/scan_features.h"
+#include "opp/mapping/registration/registration_params.h"
+#include "opp/mapping/registration/surfel_map.h"
+
+#include <vector>
+
+namespace opp::mapping {
+
+/// Variance of a sample's offset along its normal [m²]: the sensor's noise averages out over the
+/// pixels of a sample, but for the part (`systematic_noise_ratio`) that neighbouring pixels share.
+float sampleVariance(const OrientedCloud& cloud, std::size_t sample, double systematic_noise_ratio);
+
+/// What a scan is registered against: surfels of some keyframes at two resolutions and the plane
+/// landmarks.
+class LocalMap {
+ public:
+  /// An empty map for samples about `spacing` [m] apart.
+  LocalMap(double spacing, const RegistrationParams& params);
+
+  /// Adds the samples of a scan. `landmark_of_plane[p]` is the landmark of scan plane p (−1: none).
+  void insert(const ScanFeatures& scan, const Eigen::Isometry3d& map_from_body,
+              const std::vector<int>& landmark_of_plane);
+  /// Replaces the landmarks' planes; index = landmark id.
+  void setLandmarks(std::vector<Plane> planes_in_map) {
+    landmark_planes_ = std::move(planes_in_map);
+  }
+
+  const SurfelMap& fine() const { return fine_; }
+  const SurfelMap& coarse() const { return coarse_; }
+  const std::vector<Plane>& landmarkPlanes() const { return landmark_planes_; }
+
+ private:
+  double systematic_noise_ratio_;
+  SurfelMap fine_;
+  SurfelMap coarse_;
+  std::vector<Plane> landmark_planes_;
+};
+
+}  // namespace opp::mapping

@@ -1,0 +1,49 @@
+// SPDX-FileCopyrightText: 2026 The opp-mapping authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "opp/mapping/core/scan_features.h"
+#include "opp/mapping/core/se3.h"
+#include "opp/mapping/registration/local_map.h"
+#include "opp/mapping/registration/registration_params.h"
+
+#include <vector>
+
+namespace opp::mapping {
+
+/// What is known of a pose before the scan is looked at. It carries the directions that the scan
+/// does not fix.
+struct PosePrior {
+  Eigen::Isometry3d map_from_body = Eigen::Isometry3d::Identity();
+  Matrix6d information =
+      Matrix6d::Zero();  ///< of (ω, v), see `retract` [1/rad², 1/m²]; zero: unknown
+};
+
+/// A plane of the scan that is a plane landmark of the map.
+struct PlaneAssociation {
+  int scan_plane = 0;
+  int landmark = 0;
+};
+
+/// Outcome of `matchScan`.
+struct MatchResult {
+  Eigen::Isometry3d map_from_body = Eigen::Isometry3d::Identity();
+  Matrix6d information =
+      Matrix6d::Zero();                  ///< of (ω, v) from scan and map alone, without the prior
+  std::vector<PlaneAssociation> planes;  ///< in order of scan planes
+  double overlap = 0.0;  ///< share of the scan's points that agree with the map, 0–1
+  double rms = 0.0;      ///< distance of the agreeing points to their surfels [m]
+  bool converged = false;
+};
+
+/// Registers a scan against a local map, starting at the prior's pose.
+///
+/// Three stages, each a robust Gauss–Newton iteration (Cauchy kernel, annealed): points against
+/// coarse surfels, points against fine surfels, then plane landmarks through the moments of the
+/// scan's planes (four numbers a plane for all its samples, exact) together with the points that
+/// are on no such plane. An empty scan or map gives overlap 0 and the prior's pose. Deterministic.
+/// Cost: O(max_points + samples + planes) per step.
+MatchResult matchScan(const ScanFeatures& scan, const LocalMap& map, const PosePrior& prior,
+                      const RegistrationParams& params);
+
+}  // namespace opp::mapping

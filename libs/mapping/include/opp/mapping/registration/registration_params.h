@@ -1,0 +1,57 @@
+// SPDX-FileCopyrightText: 2026 The opp-mapping authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "opp/geometry/constants.h"
+#include "opp/params/field.h"
+
+#include <string_view>
+
+namespace opp::mapping {
+
+/// Parameters of the registration of a scan against a local map (planes + points, DESIGN 3, rung
+/// 3).
+struct RegistrationParams {
+  static constexpr std::string_view kSection = "registration";
+  int max_points = 2500;
+  double surfel_size_ratio = 2.5;
+  double coarse_ratio = 4.0;
+  double normal_gate = degToRad(35.0);
+  double systematic_noise_ratio = 0.3;
+  double kernel_width = 2.5;
+  int max_iterations = 30;
+  double rotation_tolerance = 2e-5;
+  double translation_tolerance = 2e-5;
+  double plane_vote_share = 0.3;
+  double plane_gate_sigmas = 4.0;
+
+  template <typename Self, typename F>
+  static void visit(Self&& p, F&& f) {
+    f(p.max_points, Field{"max_points", "", 50, 1e6,
+                          "samples of a scan used as points, balanced over their normals"});
+    f(p.surfel_size_ratio, Field{"surfel_size_ratio", "", 1.0, 20.0,
+                                 "edge of a surfel's voxel over the sample spacing"});
+    f(p.coarse_ratio,
+      Field{"coarse_ratio", "", 1.0, 20.0, "edge of a coarse voxel over that of a fine one"});
+    f(p.normal_gate, Field{"normal_gate", "rad", 0.01, 1.57,
+                           "point and surfel match if their normals differ less"});
+    f(p.systematic_noise_ratio,
+      Field{"systematic_noise_ratio", "", 0.0, 10.0,
+            "part of the sensor's noise that averaging pixels does not remove"});
+    f(p.kernel_width, Field{"kernel_width", "", 0.1, 100.0,
+                            "Cauchy kernel: residual in sigmas at which influence peaks"});
+    f(p.max_iterations,
+      Field{"max_iterations", "", 1, 1000, "Gauss-Newton steps per stage at most"});
+    f(p.rotation_tolerance,
+      Field{"rotation_tolerance", "rad", 1e-12, 0.1, "converged when a step rotates less"});
+    f(p.translation_tolerance,
+      Field{"translation_tolerance", "m", 1e-12, 0.1, "converged when a step moves less"});
+    f(p.plane_vote_share,
+      Field{"plane_vote_share", "", 0.0, 1.0,
+            "a scan's plane is a landmark if this share of its matched samples lie on it"});
+    f(p.plane_gate_sigmas, Field{"plane_gate_sigmas", "", 0.5, 100.0,
+                                 "and if angle and offset differ by less than so many sigmas"});
+  }
+};
+
+}  // namespace opp::mapping

@@ -1,0 +1,34 @@
+// SPDX-FileCopyrightText: 2026 The opp-mapping authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "opp/mapping/registration/local_map.h"
+
+namespace opp::mapping {
+
+float sampleVariance(const OrientedCloud& cloud, std::size_t sample,
+                     double systematic_noise_ratio) {
+  const float ratio = static_cast<float>(systematic_noise_ratio);
+  const float sigma = cloud.sigmas[sample];
+  return sigma * sigma * (1.0F / cloud.weights[sample] + ratio * ratio);
+}
+
+LocalMap::LocalMap(double spacing, const RegistrationParams& params)
+    : systematic_noise_ratio_(params.systematic_noise_ratio),
+      fine_(params.surfel_size_ratio * spacing, params.normal_gate),
+      coarse_(params.coarse_ratio * params.surfel_size_ratio * spacing, params.normal_gate) {}
+
+void LocalMap::insert(const ScanFeatures& scan, const Eigen::Isometry3d& map_from_body,
+                      const std::vector<int>& landmark_of_plane) {
+  const OrientedCloud& cloud = scan.cloud_in_body;
+  const Eigen::Isometry3f pose = map_from_body.cast<float>();
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    const Eigen::Vector3f point = pose * cloud.points[i];
+    const Eigen::Vector3f normal = pose.linear() * cloud.normals[i];
+    const float variance = sampleVariance(cloud, i, systematic_noise_ratio_);
+    const int label = scan.primitives_in_body.labels[i];
+    const int landmark = label < 0 ? -1 : landmark_of_plane[static_cast<std::size_t>(label)];
+    fine_.insert(point, normal, variance, landmark);
+    coarse_.insert(point, normal, variance, landmark);
+  }
+}
+
+}  // namespace opp::mapping

@@ -1,0 +1,20 @@
+// SPDX-FileCopyrightText: 2026 The opp-mapping authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "opp/cloud/sensor_model.h"
+
+namespace opp {
+
+/// Parameters of all stages from raw points to primitives.
+struct PrimitiveParams {
+  SensorModel sensor;
+
+  /// Calls f(section) for each stage, in the order of the stages.
+  template <typename Self, typename F>
+  static void visitSections(Self&& p, F&& f) {
+    f(p.sensor);
+  }
+};
+
+}  // namespace opp
