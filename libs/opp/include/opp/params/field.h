@@ -41,4 +41,11 @@ void validate(const Params& params) {
   });
 }
 
+/// validate() of every section of a composite: a struct that gathers parameter structs and has
+/// `visitSections` (see opp/params/primitive_params.h).
+template <typename Composite>
+void validateSections(const Composite& composite) {
+  Composite::visitSections(composite, [](const auto& section) { validate(section); });
+}
+
 }  // namespace opp
