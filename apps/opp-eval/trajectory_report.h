@@ -1,0 +1,23 @@
+// SPDX-FileCopyrightText: 2026 The opp-mapping authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "opp/mapping/evaluation/trajectory_error.h"
+
+#include <nlohmann/json.hpp>
+
+#include <iosfwd>
+
+namespace opp::mapping {
+
+/// {"count", "rmse", "mean", "median", "p90", "max"}, values times `factor`; null where there was
+/// nothing to measure.
+nlohmann::ordered_json toJson(const ErrorStatistics& statistics, double factor = 1.0);
+
+/// All of TrajectoryError, for --json; units are part of the keys.
+nlohmann::ordered_json toJson(const TrajectoryError& error);
+
+/// Readable table of TrajectoryError.
+void print(std::ostream& out, const TrajectoryError& error);
+
+}  // namespace opp::mapping
