@@ -14,12 +14,11 @@ using mrpt::obs::CActionRobotMovement2D;
 using mrpt::obs::CActionRobotMovement3D;
 using mrpt::poses::CPose3D;
 
-/// The raw reading where there is one: the mean that MRPT 2.5 computes from it is wrong in 3D.
+/// In 2D the raw reading where there is one: the mean may come from a few hundred particles. In 3D
+/// MRPT 2.5 writes the mean alone.
 std::optional<CPose3D> incrementOf(const mrpt::obs::CAction& action) {
   if (const auto* move = dynamic_cast<const CActionRobotMovement3D*>(&action)) {
-    const bool raw = move->estimationMethod == CActionRobotMovement3D::emOdometry &&
-                     move->rawOdometryIncrementReading != CPose3D();
-    return raw ? move->rawOdometryIncrementReading : move->poseChange.mean;
+    return move->poseChange.mean;
   }
   if (const auto* move = dynamic_cast<const CActionRobotMovement2D*>(&action)) {
     const bool raw = move->estimationMethod == CActionRobotMovement2D::emOdometry &&

@@ -133,10 +133,8 @@ std::string RawlogReader::Impl::whyNothing() const {
            " (sensor labels), change --from-index, --to-index or "
            "--sensor-label";
   }
-  std::map<std::string, std::size_t> contents = stream.foreign();
-  contents.insert(counts.skipped.begin(), counts.skipped.end());
   return name + " holds no usable 3D observation" +
-         (contents.empty() ? "" : " but " + listOf(contents)) +
+         (counts.skipped.empty() ? "" : " but " + listOf(counts.skipped)) +
          "; opp needs CObservation3DRangeScan, CObservationPointCloud, CObservationVelodyneScan or "
          "CObservationRotatingScan";
 }
@@ -156,7 +154,10 @@ std::optional<RawlogEntry> RawlogReader::next() {
   while (!entry) {
     const std::optional<RawlogItem> item = impl_->stream.next();
     impl_->counts.objects = impl_->stream.objects();
-    if (!item) break;
+    if (!item) {
+      impl_->counts.skipped.insert(impl_->stream.foreign().begin(), impl_->stream.foreign().end());
+      break;
+    }
     entry = impl_->read(*item);
   }
   if (entry) {

@@ -45,7 +45,7 @@ struct RawlogCounts {
   std::size_t scans = 0;       ///< 3D observations delivered
   std::size_t odometry = 0;    ///< odometry readings delivered
   std::size_t deselected = 0;  ///< 3D observations outside of RawlogOptions
-  /// Observations that hold no 3D measurement, by reason (a class name or a sentence).
+  /// Objects that hold no 3D measurement, by reason (a class name or a sentence).
   std::map<std::string, std::size_t> skipped;
   std::map<std::string, std::size_t> labels;  ///< 3D observations by sensor label
 };
