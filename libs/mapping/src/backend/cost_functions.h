@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "opp/mapping/backend/map_factors.h"
+#include "opp/mapping/core/map_factors.h"
 
 #include <Eigen/Geometry>
 

@@ -214,6 +214,9 @@ class Matcher {
   void report(MatchResult& result) {
     result.map_from_body = pose_;
     result.information = assemble(map_.fine(), 0.0).hessian;
+    NormalEquations loose_points;
+    addPoints(map_.fine(), 0.0, loose_points);
+    result.point_information = loose_points.hessian;
     for (std::size_t k = 0; k < planes_.size(); ++k) {
       if (planes_[k].landmark < 0) continue;
       result.planes.push_back({static_cast<int>(k), planes_[k].landmark});

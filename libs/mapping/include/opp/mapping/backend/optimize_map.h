@@ -4,7 +4,7 @@
 
 #include "opp/geometry/plane.h"
 #include "opp/mapping/backend/backend_params.h"
-#include "opp/mapping/backend/map_factors.h"
+#include "opp/mapping/core/map_factors.h"
 
 #include <Eigen/Geometry>
 

@@ -1,0 +1,69 @@
+// SPDX-FileCopyrightText: 2026 The opp-mapping authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "opp/mapping/core/map_state.h"
+#include "opp/mapping/core/mapper_params.h"
+#include "opp/mapping/core/trajectory.h"
+#include "opp/mapping/frontend/motion_model.h"
+#include "opp/mapping/registration/local_map.h"
+
+#include <optional>
+#include <vector>
+
+namespace opp::mapping {
+
+/// What became of one scan.
+struct FrameResult {
+  bool localized = false;
+  bool is_keyframe = false;
+  double overlap = 0.0;  ///< see MatchResult
+  double rms = 0.0;      ///< [m]
+};
+
+/// Builds a map from scans in the order of time: prediction, registration against the local map,
+/// keyframes, landmarks, optimization. The map's frame is the body frame of the first scan, unless
+/// `setInitialPose` says otherwise. Deterministic.
+class Mapper {
+ public:
+  explicit Mapper(const MapperParams& params);
+
+  /// Pose of the first scan; to be called before the first `add`.
+  void setInitialPose(const Eigen::Isometry3d& map_from_body) { initial_pose_ = map_from_body; }
+
+  /// Takes the next scan. `odom_from_body`: the odometry's pose at its time, if the rawlog has any.
+  /// A scan without samples is not localized.
+  FrameResult add(ScanFeatures scan, const std::optional<Eigen::Isometry3d>& odom_from_body);
+
+  /// Optimizes the whole map; to be called after the last scan.
+  void finish();
+
+  const MapState& map() const { return map_; }
+  /// Poses of all localized scans, with all that was learned after them.
+  Trajectory trajectory() const;
+
+ private:
+  /// A localized scan follows the keyframe that was the newest when it came.
+  struct Follower {
+    double timestamp;
+    int keyframe;
+    Eigen::Isometry3d keyframe_from_body;
+  };
+
+  FrameResult start(ScanFeatures scan, const std::optional<Eigen::Isometry3d>& odom_from_body);
+  bool wantsKeyframe(const MatchResult& match) const;
+  void addKeyframe(ScanFeatures scan, const MatchResult& match);
+  void follow(double timestamp, const Eigen::Isometry3d& map_from_body);
+  void optimize(int first_free);
+  void rebuildLocalMap();
+  std::vector<int> localKeyframes() const;
+
+  MapperParams params_;
+  Eigen::Isometry3d initial_pose_ = Eigen::Isometry3d::Identity();
+  MapState map_;
+  MotionModel motion_;
+  std::optional<LocalMap> local_map_;
+  std::vector<Follower> followers_;
+};
+
+}  // namespace opp::mapping

@@ -1,0 +1,137 @@
+// SPDX-FileCopyrightText: 2026 The opp-mapping authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "opp/mapping/frontend/insert_keyframe.h"
+
+#include "opp/mapping/registration/local_map.h"
+
+#include <Eigen/LU>
+
+#include <algorithm>
+#include <utility>
+
+namespace opp::mapping {
+namespace {
+
+/// Moments of the samples of each plane of a scan, in body frame, weights 1/variance.
+std::vector<PlaneFactor> planeFactors(const ScanFeatures& scan, double systematic_noise_ratio) {
+  std::vector<PlaneFactor> factors(scan.primitives_in_body.planes.size());
+  const OrientedCloud& cloud = scan.cloud_in_body;
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    const int label = scan.primitives_in_body.labels[i];
+    if (label < 0) continue;
+    PlaneFactor& factor = factors[static_cast<std::size_t>(label)];
+    factor.moments_in_body.add(cloud.points[i].cast<double>(),
+                               1.0 / sampleVariance(cloud, i, systematic_noise_ratio));
+    ++factor.samples;
+  }
+  return factors;
+}
+
+/// Landmark of each plane of the new keyframe; landmarks are made for planes that are not known
+/// yet.
+std::vector<int> assignLandmarks(const Keyframe& keyframe,
+                                 const std::vector<PlaneAssociation>& known,
+                                 LandmarkMap& landmarks) {
+  std::vector<int> landmark_of_plane(keyframe.features.primitives_in_body.planes.size(), -1);
+  for (const PlaneAssociation& a : known) {
+    landmark_of_plane[static_cast<std::size_t>(a.scan_plane)] = a.landmark;
+  }
+  for (std::size_t p = 0; p < landmark_of_plane.size(); ++p) {
+    if (landmark_of_plane[p] >= 0) continue;
+    landmark_of_plane[p] = static_cast<int>(landmarks.planes.size());
+    const Plane& in_body = keyframe.features.primitives_in_body.planes[p].plane;
+    landmarks.planes.push_back({transformed(keyframe.map_from_body, in_body), {}});
+  }
+  return landmark_of_plane;
+}
+
+void addPlaneFactors(int id, double systematic_noise_ratio, MapState& map) {
+  const Keyframe& keyframe = map.keyframes[static_cast<std::size_t>(id)];
+  std::vector<PlaneFactor> factors = planeFactors(keyframe.features, systematic_noise_ratio);
+  for (std::size_t p = 0; p < factors.size(); ++p) {
+    factors[p].keyframe = id;
+    factors[p].landmark = keyframe.landmark_of_plane[p];
+    map.landmarks.planes[static_cast<std::size_t>(factors[p].landmark)].observations.push_back(
+        {id, static_cast<int>(p)});
+    map.factors.planes.push_back(std::move(factors[p]));
+  }
+}
+
+void addOrthogonalities(const Keyframe& keyframe, MapFactors& factors) {
+  for (const OrthogonalityEdge& edge : keyframe.features.primitives_in_body.edges) {
+    std::array<int, 2> pair = {
+        keyframe.landmark_of_plane[static_cast<std::size_t>(edge.planes[0])],
+        keyframe.landmark_of_plane[static_cast<std::size_t>(edge.planes[1])]};
+    std::sort(pair.begin(), pair.end());
+    const bool known =
+        std::any_of(factors.orthogonalities.begin(), factors.orthogonalities.end(),
+                    [&](const OrthogonalityFactor& f) { return f.landmarks == pair; });
+    if (!known && pair[0] != pair[1]) factors.orthogonalities.push_back({pair});
+  }
+}
+
+void addCorners(int id, MapState& map) {
+  const Keyframe& keyframe = map.keyframes[static_cast<std::size_t>(id)];
+  const std::vector<Corner>& corners = keyframe.features.primitives_in_body.corners;
+  for (std::size_t c = 0; c < corners.size(); ++c) {
+    std::array<int, 3> planes{};
+    for (std::size_t k = 0; k < 3; ++k) {
+      planes[k] = keyframe.landmark_of_plane[static_cast<std::size_t>(corners[c].planes[k])];
+    }
+    std::sort(planes.begin(), planes.end());
+    if (planes[0] == planes[1] || planes[1] == planes[2]) continue;
+    auto& landmarks = map.landmarks.corners;
+    auto landmark = std::find_if(landmarks.begin(), landmarks.end(),
+                                 [&](const CornerLandmark& l) { return l.planes == planes; });
+    if (landmark == landmarks.end()) {
+      landmark = landmarks.insert(landmarks.end(),
+                                  {planes, keyframe.map_from_body * corners[c].position, {}});
+    }
+    landmark->observations.push_back({id, static_cast<int>(c)});
+  }
+}
+
+void addRelativePose(int id, const Matrix6d& point_information, MapState& map) {
+  if (id == 0) return;
+  const Eigen::Isometry3d& first = map.keyframes[static_cast<std::size_t>(id - 1)].map_from_body;
+  const Eigen::Isometry3d& second = map.keyframes[static_cast<std::size_t>(id)].map_from_body;
+  Matrix6d map_from_first = Matrix6d::Zero();
+  map_from_first.topLeftCorner<3, 3>() = first.linear();
+  map_from_first.bottomRightCorner<3, 3>() = first.linear();
+  map.factors.relative_poses.push_back(
+      {id - 1, id, first.inverse() * second,
+       map_from_first.transpose() * point_information * map_from_first});
+}
+
+}  // namespace
+
+int insertKeyframe(ScanFeatures features, const MatchResult& match, double systematic_noise_ratio,
+                   MapState& map) {
+  const int id = static_cast<int>(map.keyframes.size());
+  Keyframe keyframe{match.map_from_body, std::move(features), {}};
+  keyframe.landmark_of_plane = assignLandmarks(keyframe, match.planes, map.landmarks);
+  map.keyframes.push_back(std::move(keyframe));
+  addPlaneFactors(id, systematic_noise_ratio, map);
+  addOrthogonalities(map.keyframes.back(), map.factors);
+  addCorners(id, map);
+  addRelativePose(id, match.point_information, map);
+  return id;
+}
+
+void updateCorners(LandmarkMap& landmarks) {
+  for (CornerLandmark& corner : landmarks.corners) {
+    Eigen::Matrix3d normals;
+    Eigen::Vector3d offsets;
+    for (int k = 0; k < 3; ++k) {
+      const Plane& plane =
+          landmarks.planes[static_cast<std::size_t>(corner.planes[static_cast<std::size_t>(k)])]
+              .plane_in_map;
+      normals.row(k) = plane.normal().transpose();
+      offsets[k] = -plane.d();
+    }
+    // The planes meet at right angles up to noise, so the matrix is far from singular.
+    corner.position_in_map = normals.partialPivLu().solve(offsets);
+  }
+}
+
+}  // namespace opp::mapping
