@@ -1,0 +1,187 @@
+// SPDX-FileCopyrightText: 2026 The opp-mapping authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "opp/mapping/registration/match_scan.h"
+
+#include "opp/geometry/constants.h"
+
+#include "support/random.h"
+#include "support/synthetic_features.h"
+
+#include <Eigen/Eigenvalues>
+#include <gtest/gtest.h>
+
+#include <numeric>
+
+namespace opp::mapping {
+namespace {
+
+constexpr double kSpacing = 0.09;
+
+struct ScanAndMap {
+  ScanFeatures scan;
+  LocalMap map{kSpacing, RegistrationParams{}};
+  Eigen::Isometry3d map_from_body = Eigen::Isometry3d::Identity();
+};
+
+/// A room as seen from the origin (the map, which is the scene's frame) and again from a body a
+/// step away. Landmarks are the room's planes if `with_landmarks`.
+ScanAndMap seeTwice(const test::Rectangles& room, std::uint64_t seed, bool with_landmarks,
+                    const test::SyntheticOptions& options) {
+  test::Random random(seed);
+  const Eigen::Vector3d eye(0.0, 0.0, 1.3);
+  ScanAndMap both;
+  both.map_from_body = random.motion(0.3, 0.3);
+  both.map_from_body.translation() += eye;
+  test::SyntheticOptions second = options;
+  second.seed = 2 * seed + 1;
+  both.scan = test::trueFeatures(test::sampleScene(room, both.map_from_body.translation(),
+                                                   both.map_from_body.inverse(), second));
+  second.seed = 2 * seed;
+  const ScanFeatures target =
+      test::trueFeatures(test::sampleScene(room, eye, Eigen::Isometry3d::Identity(), second));
+  std::vector<int> landmarks(target.primitives_in_body.planes.size(), -1);
+  if (with_landmarks) std::iota(landmarks.begin(), landmarks.end(), 0);
+  both.map.insert(target, Eigen::Isometry3d::Identity(), landmarks);
+  std::vector<Plane> planes;
+  for (const PlanePrimitive& p : target.primitives_in_body.planes) planes.push_back(p.plane);
+  if (with_landmarks) both.map.setLandmarks(planes);
+  return both;
+}
+
+test::SyntheticOptions options(double sigma) {
+  test::SyntheticOptions result;
+  result.spacing = kSpacing;
+  result.sigma = sigma;
+  return result;
+}
+
+/// True pose, moved by up to 3° and 5 cm, with an information that hardly pulls.
+PosePrior perturbed(const Eigen::Isometry3d& pose, test::Random& random) {
+  PosePrior prior;
+  Vector6d omega_v;
+  omega_v << degToRad(random.uniform(0.0, 3.0)) * random.unitVector(),
+      random.uniform(0.0, 0.05) * random.unitVector();
+  prior.map_from_body = retract(pose, omega_v);
+  prior.information = 1e-6 * Matrix6d::Identity();
+  return prior;
+}
+
+TEST(MatchScan, RecoversThePoseInExactRoomsThroughPlaneLandmarks) {
+  test::Random random(1);
+  for (std::uint64_t seed = 0; seed < 50; ++seed) {
+    const ScanAndMap both = seeTwice(test::furnishedRoom(seed), seed, true, options(0.0));
+    const PosePrior prior = perturbed(both.map_from_body, random);
+    const MatchResult result = matchScan(both.scan, both.map, prior, RegistrationParams{});
+    const Vector6d error = difference(both.map_from_body, result.map_from_body);
+    // Exact landmarks; what is left comes from points on surfels that average across an edge.
+    EXPECT_LT(error.head<3>().norm(), 1e-3) << "seed " << seed;
+    EXPECT_LT(error.tail<3>().norm(), 1e-3) << "seed " << seed;
+    EXPECT_TRUE(result.converged);
+    EXPECT_GT(result.overlap, 0.7);
+    EXPECT_GE(result.planes.size(), 3U);
+    for (const PlaneAssociation& p : result.planes) {
+      const Plane expected = transformed(
+          both.map_from_body,
+          both.scan.primitives_in_body.planes[static_cast<std::size_t>(p.scan_plane)].plane);
+      const Plane& found = both.map.landmarkPlanes()[static_cast<std::size_t>(p.landmark)];
+      EXPECT_TRUE(found.coefficients().isApprox(expected.coefficients(), 1e-6));
+    }
+  }
+}
+
+TEST(MatchScan, RecoversThePoseOfNoisyScansFromPointsAlone) {
+  test::Random random(2);
+  const double sigma = 0.005;
+  for (std::uint64_t seed = 0; seed < 50; ++seed) {
+    const ScanAndMap both = seeTwice(test::furnishedRoom(seed), seed, false, options(sigma));
+    const PosePrior prior = perturbed(both.map_from_body, random);
+    const MatchResult result = matchScan(both.scan, both.map, prior, RegistrationParams{});
+    const Vector6d error = difference(both.map_from_body, result.map_from_body);
+    // 2500 points, at least a tenth of them facing each axis: 4·σ·√2/√250 = 1.8 mm in each of
+    // three directions, rounded up; the lever arm of the rotation is about 1 m.
+    EXPECT_LT(error.head<3>().norm(), 0.003) << "seed " << seed;
+    EXPECT_LT(error.tail<3>().norm(), 0.003) << "seed " << seed;
+  }
+}
+
+TEST(MatchScan, IsNotMisledByThirtyPercentOfMovedPoints) {
+  test::Random random(3);
+  for (std::uint64_t seed = 0; seed < 20; ++seed) {
+    ScanAndMap both = seeTwice(test::furnishedRoom(seed), seed, false, options(0.002));
+    OrientedCloud& cloud = both.scan.cloud_in_body;
+    const Eigen::Isometry3f moved = random.motion(0.2, 0.3).cast<float>();
+    for (std::size_t i = 0; i < cloud.size(); ++i) {
+      if (random.uniform(0.0, 1.0) > 0.3) continue;
+      cloud.points[i] = moved * cloud.points[i];
+      cloud.normals[i] = moved.linear() * cloud.normals[i];
+      both.scan.primitives_in_body.labels[i] = -1;
+    }
+    const PosePrior prior = perturbed(both.map_from_body, random);
+    const MatchResult result = matchScan(both.scan, both.map, prior, RegistrationParams{});
+    const Vector6d error = difference(both.map_from_body, result.map_from_body);
+    // 3·σ/√250 = 0.4 mm of noise and what the Cauchy tails of 30 % of outliers leave.
+    EXPECT_LT(error.head<3>().norm(), 0.004) << "seed " << seed;
+    EXPECT_LT(error.tail<3>().norm(), 0.005) << "seed " << seed;
+  }
+}
+
+TEST(MatchScan, ASingleWallFixesThreeDirectionsAndThePriorTheRest) {
+  const test::Rectangles wall = {{{2.0, 0.0, 1.3}, {0.0, 0.0, 1.0}, {0.0, 1.5, 0.0}}};
+  // Seen from x < 2, that is from the side of half_u × half_v = −x.
+  const ScanAndMap both = seeTwice(wall, 7, true, options(0.0));
+  ASSERT_GT(both.scan.cloud_in_body.size(), 100U);
+  PosePrior prior;
+  Vector6d omega_v;
+  omega_v << 0.0, 0.01, 0.0, 0.03, 0.02, 0.01;
+  prior.map_from_body = retract(both.map_from_body, omega_v);
+  prior.information = Matrix6d::Identity();
+  const MatchResult result = matchScan(both.scan, both.map, prior, RegistrationParams{});
+  const Vector6d error = difference(both.map_from_body, result.map_from_body);
+  // Information of the prior is 1e-6 of the wall's: its pull is below 1e-3.
+  EXPECT_NEAR(error[1], 0.0, 1e-3);
+  EXPECT_NEAR(error[2], 0.0, 1e-3);
+  EXPECT_NEAR(error[0], 0.0, 1e-3);  // the prior is right about the turn about the wall's normal
+  EXPECT_NEAR(error[4], 0.02, 1e-3);
+  EXPECT_NEAR(error[5], 0.01, 1e-3);
+  const Eigen::SelfAdjointEigenSolver<Matrix6d> eigen(result.information);
+  EXPECT_LT(eigen.eigenvalues()[2], 1e-6 * eigen.eigenvalues()[3]);
+}
+
+TEST(MatchScan, EmptyScanOrMapKeepsThePrior) {
+  const ScanAndMap both = seeTwice(test::furnishedRoom(1), 1, false, options(0.0));
+  test::Random random(4);
+  const PosePrior prior = perturbed(both.map_from_body, random);
+  const LocalMap empty_map(kSpacing, RegistrationParams{});
+  for (const MatchResult& result :
+       {matchScan(ScanFeatures{}, both.map, prior, RegistrationParams{}),
+        matchScan(both.scan, empty_map, prior, RegistrationParams{}),
+        matchScan(ScanFeatures{}, empty_map, prior, RegistrationParams{})}) {
+    EXPECT_TRUE(result.map_from_body.isApprox(prior.map_from_body, 1e-12));
+    EXPECT_EQ(result.overlap, 0.0);
+    EXPECT_TRUE(result.information.isZero());
+    EXPECT_TRUE(result.planes.empty());
+  }
+}
+
+TEST(MatchScan, RepeatsItselfToTheLastBit) {
+  const ScanAndMap both = seeTwice(test::furnishedRoom(2), 2, true, options(0.003));
+  test::Random random(5);
+  const PosePrior prior = perturbed(both.map_from_body, random);
+  const MatchResult a = matchScan(both.scan, both.map, prior, RegistrationParams{});
+  const MatchResult b = matchScan(both.scan, both.map, prior, RegistrationParams{});
+  EXPECT_EQ(a.map_from_body.matrix(), b.map_from_body.matrix());
+  EXPECT_EQ(a.information, b.information);
+}
+
+TEST(SampleVariance, AveragesNoiseButNotItsSystematicPart) {
+  OrientedCloud cloud;
+  cloud.points = cloud.normals = {Eigen::Vector3f::UnitZ()};
+  cloud.sigmas = {0.01F};
+  cloud.weights = {4.0F};
+  // 1e-4 · (1/4 + 0.5²)
+  EXPECT_FLOAT_EQ(sampleVariance(cloud, 0, 0.5), 0.5e-4F);
+  EXPECT_FLOAT_EQ(sampleVariance(cloud, 0, 0.0), 0.25e-4F);
+}
+
+}  // namespace
+}  // namespace opp::mapping

@@ -1,0 +1,19 @@
+// SPDX-FileCopyrightText: 2026 The opp-mapping authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "opp/mapping/core/scan_features.h"
+
+#include "support/synthetic_room.h"
+
+namespace opp::test {
+
+/// What perfect detection would make of a synthetic scene: its true planes, families, edges, the
+/// lines and corners that have samples on all their planes, signatures from the samples. For tests
+/// of what comes after detection. Position covariances are those of corners known to 1 mm.
+Primitives truePrimitives(const SyntheticScene& scene);
+
+/// A scan with its cloud and `truePrimitives`.
+mapping::ScanFeatures trueFeatures(const SyntheticScene& scene);
+
+}  // namespace opp::test
