@@ -39,12 +39,17 @@ std::string withUnit(std::string number, std::string_view unit) {
   return number;
 }
 
-std::string angleText(double radians) {
+/// Whether at most six digits in degrees give exactly this angle.
+bool isRoundInDegrees(double radians) {
   const std::string degrees = rounded(radToDeg(radians));
   double parsed = 0.0;
   std::from_chars(degrees.data(), degrees.data() + degrees.size(), parsed);
-  if (degToRad(parsed) == radians) return degrees + " deg";
-  return shortest(radians) + " rad";
+  return degToRad(parsed) == radians;
+}
+
+std::string angleText(double radians) {
+  return isRoundInDegrees(radians) ? rounded(radToDeg(radians)) + " deg"
+                                   : shortest(radians) + " rad";
 }
 
 std::string quoted(const std::string& text) {
@@ -154,14 +159,18 @@ std::string rangeText(const Parameter& parameter) {
   if (std::holds_alternative<bool*>(parameter.value)) return "true or false";
   if (std::holds_alternative<std::string*>(parameter.value)) return "text";
   const Field& field = parameter.field;
-  const auto bound = [&](double number) {
-    return rounded(isAngle(field) ? radToDeg(number) : number);
-  };
-  const std::string_view unit = isAngle(field) ? "deg" : field.unit;
+  std::string_view unit = field.unit;
+  double scale = 1.0;
+  if (isAngle(field) && isRoundInDegrees(field.min) && isRoundInDegrees(field.max)) {
+    unit = "deg";
+    scale = radToDeg(1.0);
+  }
+  const std::string min = rounded(scale * field.min);
+  const std::string max = rounded(scale * field.max);
   if (std::isinf(field.min) && std::isinf(field.max)) return withUnit("any number", unit);
-  if (std::isinf(field.max)) return withUnit("at least " + bound(field.min), unit);
-  if (std::isinf(field.min)) return withUnit("at most " + bound(field.max), unit);
-  return withUnit(bound(field.min) + " to " + bound(field.max), unit);
+  if (std::isinf(field.max)) return withUnit("at least " + min, unit);
+  if (std::isinf(field.min)) return withUnit("at most " + max, unit);
+  return withUnit(min + " to " + max, unit);
 }
 
 }  // namespace opp::mapping
