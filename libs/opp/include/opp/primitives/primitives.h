@@ -18,13 +18,14 @@ struct PlanePrimitive {
   Plane plane;                                           ///< n points to the viewpoint's side
   PointMoments moments;                                  ///< of its inliers, weights 1/σ² [1/m²]
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  ///< of (α, β, δ), see `tangentBasis`
-  int family = -1;    ///< index into Primitives::families; −1: in none
+  int family = -1;    ///< index into Primitives::families; −1: in none (before refinement)
   int support = 0;    ///< number of samples on it
   double area = 0.0;  ///< of its support, samples × spacing² [m²]
   double rms = 0.0;   ///< of the inliers' distances [m]
 };
 
 /// Parallel planes (opposite normals included) that share one normal; Sommer et al. 2020, Eq. 9.
+/// A plane without a parallel is a family of its own.
 struct ParallelFamily {
   Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();  ///< planes have +normal or −normal
   std::vector<int> planes;                            ///< ascending indices
@@ -69,6 +70,10 @@ struct Corner {
 struct Primitives {
   std::vector<PlanePrimitive> planes;
   std::vector<ParallelFamily> families;
+  /// Joint covariance of the families' normals: block (f, g) of size 2×2 [rad²], coordinates in
+  /// `tangentBasis(families[f].normal)`. Of full structure, so that points where planes meet get a
+  /// covariance that knows their normals turn together.
+  Eigen::MatrixXd normal_covariance;
   std::vector<OrthogonalityEdge> edges;
   std::vector<LineSegment> lines;
   std::vector<Corner> corners;

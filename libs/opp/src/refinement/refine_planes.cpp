@@ -1,0 +1,211 @@
+// SPDX-FileCopyrightText: 2026 The opp-mapping authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "opp/refinement/refine_planes.h"
+
+#include "opp/refinement/find_structure.h"
+#include "opp/refinement/solve_normals.h"
+
+#include "refinement/plane_bookkeeping.h"
+#include "refinement/sample_assignment.h"
+
+#include <Eigen/Eigenvalues>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+namespace opp {
+namespace {
+
+/// A plane rests when a pass moves it by less than this part of its standard deviation.
+constexpr double kRest = 0.01;
+/// Passes on a part of the samples: each at least halves what is left of the start's error; the
+/// rest is left to the full passes.
+constexpr int kCoarsePasses = 4;
+/// Families and edges are tested again after the constrained passes; a change restarts them.
+constexpr int kMaxRestructurings = 3;
+
+class Refiner {
+ public:
+  Refiner(const OrientedCloud& cloud, const PlaneGraph& graph, const RefinementParams& params)
+      : cloud_(cloud), params_(params), edges_(graph.edges), labels_(cloud.size(), -1) {
+    for (const PlaneNode& node : graph.nodes) {
+      const double weight = node.moments.weight();
+      const double rms =
+          weight > 0.0 ? std::sqrt(node.moments.squaredError(node.plane) / weight) : 0;
+      fits_.emplace_back();
+      fits_.back().plane = node.plane;
+      fits_.back().slack = std::max(rms, cloud.spacing);
+    }
+  }
+
+  Primitives refine() {
+    fitAlone();
+    dropAndMerge();
+    structure_ = findStructure(estimates(), edges_, params_);
+    fitTogether();
+    for (int k = 0; k < kMaxRestructurings && restructure(); ++k) fitTogether();
+    return collect();
+  }
+
+ private:
+  using Index = std::size_t;
+
+  std::vector<ParallelGroup> groupsOf(const std::vector<std::vector<int>>& families) const {
+    std::vector<ParallelGroup> groups;
+    for (const std::vector<int>& family : families) {
+      const Eigen::Vector3d normal = fits_[static_cast<Index>(family.front())].plane.normal();
+      groups.push_back(makeGroup(normal, {family.begin(), family.end()}, fits_));
+    }
+    return groups;
+  }
+
+  /// Fits every plane for itself, first on a part of the samples.
+  void fitAlone() {
+    std::vector<std::vector<int>> single;
+    for (Index k = 0; k < fits_.size(); ++k) single.push_back({static_cast<int>(k)});
+    const Index coarse =
+        std::max<Index>(1, cloud_.size() / static_cast<Index>(std::max(1, params_.coarse_samples)));
+    for (int pass = 0; pass < params_.max_iterations; ++pass) {
+      const Index stride = pass < kCoarsePasses ? coarse : 1;
+      assignSamples(cloud_, groupsOf(single), params_, stride, fits_, labels_);
+      bool rest = true;
+      for (PlaneFit& fit : fits_) {
+        const Eigen::Vector3d normal = ownNormal(fit.moments.scatter(), fit.plane.normal());
+        rest = move(fit, normal) && rest;
+      }
+      if (rest && stride == 1) return;
+      if (rest) pass = std::max(pass, kCoarsePasses - 1);
+    }
+  }
+
+  /// Fits all planes jointly, with shared and orthogonal normals.
+  void fitTogether() {
+    for (int pass = 0; pass < params_.max_iterations; ++pass) {
+      assignSamples(cloud_, groupsOf(structure_.families), params_, 1, fits_, labels_);
+      solve();
+      bool rest = true;
+      for (Index f = 0; f < structure_.families.size(); ++f) {
+        for (const int plane : structure_.families[f]) {
+          rest = move(fits_[static_cast<Index>(plane)], solution_.normals[f]) && rest;
+        }
+      }
+      converged_ = rest && solution_.converged;
+      if (rest) return;
+    }
+  }
+
+  void solve() {
+    NormalProblem problem;
+    std::vector<Eigen::Vector3d> normals;
+    for (const std::vector<int>& family : structure_.families) {
+      Eigen::Matrix3d scatter = Eigen::Matrix3d::Zero();
+      for (const int plane : family) scatter += fits_[static_cast<Index>(plane)].moments.scatter();
+      problem.scatters.push_back(scatter);
+      normals.push_back(fits_[static_cast<Index>(family.front())].plane.normal());
+    }
+    problem.frames = structure_.frames;
+    const double variance = params_.systematic_angle * params_.systematic_angle;
+    for (const std::array<int, 2>& edge : structure_.soft_edges) {
+      problem.soft_edges.push_back({edge, 1.0 / std::max(variance, kLeastAngleVariance)});
+    }
+    solution_ = solveNormals(problem, normals);
+  }
+
+  /// Tests families and edges again; true if planes or structure changed and need another fit.
+  bool restructure() {
+    const std::size_t before = fits_.size();
+    dropAndMerge();
+    PlaneStructure tested = findStructure(estimates(), edges_, params_);
+    const bool changed = fits_.size() != before || tested.families != structure_.families ||
+                         tested.frames != structure_.frames ||
+                         tested.soft_edges != structure_.soft_edges;
+    structure_ = std::move(tested);
+    return changed;
+  }
+
+  /// Sets the plane to ±normal through its samples' mean; true if it hardly moved.
+  bool move(PlaneFit& fit, const Eigen::Vector3d& normal) const {
+    const double slack = fit.slack;
+    const double excess = fit.meanSquare(params_.outlier_cutoff) - fit.meanVariance();
+    if (fit.support > 0) fit.slack = std::min(slack, std::sqrt(std::max(0.0, excess)));
+    const Plane old = fit.plane;
+    const Eigen::Vector3d n = normal.dot(old.normal()) < 0.0 ? Eigen::Vector3d(-normal) : normal;
+    const Eigen::Vector3d anchor =
+        fit.moments.empty() ? old.project(Eigen::Vector3d::Zero()) : fit.moments.mean();
+    fit.plane = Plane::fromPointNormal(anchor, n);
+    const Eigen::Vector3d turn = n - old.normal();
+    const double shift = old.signedDistance(anchor);
+    const double squared_change =
+        fit.moments.weight() * shift * shift + turn.dot(fit.moments.scatter() * turn);
+    const double spread = std::sqrt(fit.meanVariance() + fit.slack * fit.slack);
+    return squared_change <= kRest * kRest && slack - fit.slack <= 0.1 * spread;
+  }
+
+  std::vector<NormalEstimate> estimates() const {
+    std::vector<NormalEstimate> result;
+    for (const PlaneFit& fit : fits_) {
+      const Eigen::Matrix3d& scatter = fit.moments.scatter();
+      result.push_back({ownNormal(scatter, fit.plane.normal()), scatter});
+    }
+    return result;
+  }
+
+  void dropAndMerge() {
+    const std::vector<int> new_index = survivors(fits_, params_);
+    compact(new_index, fits_, edges_);
+    for (int& label : labels_) {
+      if (label >= 0) label = new_index[static_cast<Index>(label)];
+    }
+  }
+
+  Primitives collect() const {
+    Primitives result;
+    result.edges = structure_.edges;
+    result.labels = labels_;
+    result.converged = converged_ || fits_.empty();
+    result.normal_covariance = solution_.covariance;
+    for (Index f = 0; f < structure_.families.size(); ++f) {
+      result.families.push_back({solution_.normals[f], structure_.families[f]});
+    }
+    for (Index k = 0; k < fits_.size(); ++k) {
+      result.planes.push_back(primitiveOf(fits_[k], structure_.family_of[k], cloud_, result));
+    }
+    return result;
+  }
+
+  const OrientedCloud& cloud_;
+  const RefinementParams& params_;
+  std::vector<OrthogonalityEdge> edges_;
+  std::vector<int> labels_;
+  std::vector<PlaneFit> fits_;
+  PlaneStructure structure_;
+  NormalSolution solution_;
+  bool converged_ = false;
+};
+
+void check(const OrientedCloud& cloud, const PlaneGraph& graph) {
+  if (cloud.normals.size() != cloud.size() || cloud.sigmas.size() != cloud.size() ||
+      cloud.weights.size() != cloud.size()) {
+    throw std::invalid_argument("an oriented cloud needs one normal, sigma and weight per point");
+  }
+  const auto valid = [&](int index) {
+    return index >= 0 && static_cast<std::size_t>(index) < graph.nodes.size();
+  };
+  for (const OrthogonalityEdge& edge : graph.edges) {
+    if (!valid(edge.planes[0]) || !valid(edge.planes[1])) {
+      throw std::invalid_argument("an edge of the plane graph names a plane that is not there");
+    }
+  }
+}
+
+}  // namespace
+
+Primitives refinePlanes(const OrientedCloud& cloud, const PlaneGraph& graph,
+                        const RefinementParams& params) {
+  validate(params);
+  check(cloud, graph);
+  return Refiner(cloud, graph, params).refine();
+}
+
+}  // namespace opp
