@@ -5,7 +5,8 @@
 #include "opp/geometry/constants.h"
 
 #include "support/random.h"
-#include "support/rectangle_scene.h"
+#include "support/rough_graph.h"
+#include "support/synthetic_room.h"
 
 #include <gtest/gtest.h>
 
@@ -15,7 +16,9 @@
 namespace opp {
 namespace {
 
-using test::RectangleScene;
+using test::Rectangles;
+using test::SyntheticOptions;
+using test::SyntheticScene;
 
 /// Independent noise, no distortion: what the scenes of these tests have.
 RefinementParams idealSensor() {
@@ -25,29 +28,36 @@ RefinementParams idealSensor() {
   return params;
 }
 
-RectangleScene room() { return test::boxScene({-2.0, -1.5, -1.2}, {2.5, 1.8, 1.3}); }
+/// Order of its planes: −x, +x, −y, +y, −z, +z.
+Rectangles room() { return test::roomSides({-2.0, -1.5, -1.2}, {2.5, 1.8, 1.3}); }
 
-RectangleScene randomRoom(test::Random& random) {
-  const Eigen::Vector3d high(random.uniform(0.5, 3.0), random.uniform(0.5, 3.0),
-                             random.uniform(0.5, 3.0));
-  const Eigen::Vector3d low(-random.uniform(0.5, 3.0), -random.uniform(0.5, 3.0),
-                            -random.uniform(0.5, 3.0));
-  return test::boxScene(low, high).transformed(random.pose(2.0));
+/// `rectangles` seen from the origin, in a random frame.
+SyntheticScene sampled(const Rectangles& rectangles, double sigma, test::Random& random,
+                       double spacing = 0.05) {
+  SyntheticOptions options;
+  options.sigma = sigma;
+  options.spacing = spacing;
+  options.normal_sigma = 0.02;
+  options.seed = static_cast<std::uint64_t>(random.integer(0, 1 << 30));
+  return test::sampleScene(rectangles, Eigen::Vector3d::Zero(), random.pose(2.0), options);
 }
 
-/// A floor and two walls that meet it; the second wall stands at `angle` to the first.
-RectangleScene threeWalls(double angle) {
-  RectangleScene scene;
+/// A floor and two walls that meet in a corner; the second wall stands at `angle` to the first.
+Rectangles threeWalls(double angle) {
   const Eigen::Vector3d x = Eigen::Vector3d::UnitX(), y = Eigen::Vector3d::UnitY(),
-                        z = Eigen::Vector3d::UnitZ();
+                        z = Eigen::Vector3d::UnitZ(), corner(-1.5, -1.5, -1.5);
   const Eigen::Vector3d along = std::cos(angle) * x + std::sin(angle) * y;
-  scene.rectangles = {{Eigen::Vector3d::Zero(), 3.0 * x, 3.0 * y},
-                      {Eigen::Vector3d::Zero(), 3.0 * x, 2.0 * z},
-                      {Eigen::Vector3d::Zero(), 3.0 * along, 2.0 * z}};
-  scene.edges = {{0, 1}, {0, 2}, {1, 2}};
-  scene.viewpoint = {1.5, 1.5, 1.5};
-  scene.sigma = 0.003;
-  return scene;
+  return {{corner + 1.5 * x + 1.5 * y, 1.5 * x, 1.5 * y},
+          {corner + 1.5 * x + z, z, 1.5 * x},
+          {corner + 1.5 * along + z, 1.5 * along, z}};
+}
+
+/// Error of (α, β, δ), normalized by the plane's covariance: χ² with 3 degrees of freedom.
+double normalizedError(const PlanePrimitive& estimate, const Plane& truth) {
+  Eigen::Vector3d error;
+  error << tangentBasis(estimate.plane.normal()).transpose() * truth.normal(),
+      truth.d() - estimate.plane.d();
+  return error.dot(estimate.covariance.ldlt().solve(error));
 }
 
 double angleOf(const Primitives& result, std::size_t a, std::size_t b) {
@@ -56,18 +66,17 @@ double angleOf(const Primitives& result, std::size_t a, std::size_t b) {
 
 TEST(RefinePlanes, FindsTheExactRoomFromPlanesOffByDegreesAndCentimetres) {
   test::Random random(1);
-  const RectangleScene scene = room();
-  const OrientedCloud cloud = scene.sample(random);
-  const Primitives result =
-      refinePlanes(cloud, scene.rough(random, degToRad(4.0), 0.03), idealSensor());
+  const SyntheticScene scene = sampled(room(), 0.0, random);
+  const Primitives result = refinePlanes(
+      scene.cloud, test::roughGraph(scene, degToRad(4.0), 0.03, random), idealSensor());
   EXPECT_TRUE(result.converged);
-  ASSERT_EQ(result.planes.size(), 6u);
-  EXPECT_EQ(result.edges.size(), 12u);
-  ASSERT_EQ(result.families.size(), 3u);
+  ASSERT_EQ(result.planes.size(), 6U);
+  EXPECT_EQ(result.edges.size(), 12U);
+  ASSERT_EQ(result.families.size(), 3U);
   for (std::size_t k = 0; k < 6; ++k) {
     // Coordinates are rounded to float, 1e-7 m here; a mean over thousands is better than that.
-    EXPECT_LT(angleBetween(result.planes[k].plane, scene.plane(k)), 1e-7);
-    EXPECT_NEAR(result.planes[k].plane.d(), scene.plane(k).d(), 1e-7);
+    EXPECT_LT(angleBetween(result.planes[k].plane, scene.planes[k]), 1e-7);
+    EXPECT_NEAR(result.planes[k].plane.d(), scene.planes[k].d(), 2e-7);
     EXPECT_LT(result.planes[k].rms, 1e-6);
   }
   for (std::size_t a = 0; a < 3; ++a) {
@@ -80,15 +89,18 @@ TEST(RefinePlanes, FindsTheExactRoomFromPlanesOffByDegreesAndCentimetres) {
 TEST(RefinePlanes, LabelsEverySampleOfNoisyRandomRooms) {
   test::Random random(2);
   for (int k = 0; k < 50; ++k) {
-    RectangleScene scene = randomRoom(random);
-    scene.sigma = random.uniform(0.0, 0.01);
-    scene.spacing = random.uniform(0.05, 0.15);
-    const OrientedCloud cloud = scene.sample(random);
-    const Primitives result =
-        refinePlanes(cloud, scene.rough(random, degToRad(3.0), 0.03), idealSensor());
-    ASSERT_EQ(result.planes.size(), 6u) << k;
+    const Eigen::Vector3d size(random.uniform(1.0, 6.0), random.uniform(1.0, 6.0),
+                               random.uniform(1.0, 6.0));
+    const Eigen::Vector3d low = -size.cwiseProduct(
+        Eigen::Vector3d(random.uniform(0.2, 0.8), random.uniform(0.2, 0.8), 0.5));
+    const SyntheticScene scene =
+        sampled(test::roomSides(low, low + size), random.uniform(0.0, 0.01), random,
+                random.uniform(0.05, 0.15));
+    const Primitives result = refinePlanes(
+        scene.cloud, test::roughGraph(scene, degToRad(3.0), 0.03, random), idealSensor());
+    ASSERT_EQ(result.planes.size(), 6U) << k;
     EXPECT_TRUE(result.converged) << k;
-    EXPECT_EQ(result.families.size(), 3u) << k;
+    EXPECT_EQ(result.families.size(), 3U) << k;
     std::vector<int> counts(6, 0);
     for (const int label : result.labels) {
       if (label >= 0) ++counts[static_cast<std::size_t>(label)];
@@ -97,18 +109,13 @@ TEST(RefinePlanes, LabelsEverySampleOfNoisyRandomRooms) {
     for (std::size_t i = 0; i < 6; ++i) {
       const PlanePrimitive& plane = result.planes[i];
       EXPECT_EQ(plane.support, counts[i]);
-      EXPECT_NEAR(plane.area, counts[i] * cloud.spacing * cloud.spacing, 1e-9);
-      EXPECT_GE(plane.plane.signedDistance(scene.viewpoint), 0.0);
+      EXPECT_NEAR(plane.area, counts[i] * scene.cloud.spacing * scene.cloud.spacing, 1e-9);
+      EXPECT_GE(plane.plane.signedDistance(scene.cloud.viewpoint.cast<double>()), 0.0);
       labelled += static_cast<std::size_t>(counts[i]);
-      // Normalized error of the constrained plane, χ² with 3 degrees of freedom: 40 is p < 1e-8.
-      const Plane truth = scene.plane(i);
-      Eigen::Vector3d error;
-      error << tangentBasis(plane.plane.normal()).transpose() * truth.normal(),
-          truth.d() - plane.plane.d();
-      EXPECT_LT(error.dot(plane.covariance.ldlt().solve(error)), 40.0) << k;
+      EXPECT_LT(normalizedError(plane, scene.planes[i]), 40.0) << k;  // χ²₃: p < 1e-8
     }
     // Tukey's cutoff of 4.7σ loses 3e-6 of the samples, the normal gate none.
-    EXPECT_GT(labelled, cloud.size() * 999 / 1000) << k;
+    EXPECT_GT(labelled, scene.cloud.size() * 999 / 1000) << k;
   }
 }
 
@@ -117,18 +124,12 @@ TEST(RefinePlanes, CovarianceOfConstrainedPlanesPredictsTheirErrors) {
   double normalized = 0.0;
   const int scans = 300;
   for (int k = 0; k < scans; ++k) {
-    RectangleScene scene = room().transformed(random.pose(2.0));
-    scene.sigma = 0.005;
-    scene.spacing = 0.2;
-    const OrientedCloud cloud = scene.sample(random);
-    const Primitives result = refinePlanes(cloud, scene.rough(random, 0.02, 0.02), idealSensor());
-    ASSERT_EQ(result.planes.size(), 6u);
+    const SyntheticScene scene = sampled(room(), 0.005, random, 0.2);
+    const Primitives result =
+        refinePlanes(scene.cloud, test::roughGraph(scene, 0.02, 0.02, random), idealSensor());
+    ASSERT_EQ(result.planes.size(), 6U);
     const std::size_t i = static_cast<std::size_t>(k) % 6;
-    const Plane truth = scene.plane(i);
-    Eigen::Vector3d error;
-    error << tangentBasis(result.planes[i].plane.normal()).transpose() * truth.normal(),
-        truth.d() - result.planes[i].plane.d();
-    normalized += error.dot(result.planes[i].covariance.ldlt().solve(error));
+    normalized += normalizedError(result.planes[i], scene.planes[i]);
   }
   // Mean of 300 χ²₃: 3 ± 3·√(6/300) = 3 ± 0.42.
   EXPECT_NEAR(normalized / scans, 3.0, 0.42);
@@ -138,15 +139,18 @@ TEST(RefinePlanes, WallsThatAreNotOrthogonalKeepTheirAngle) {
   test::Random random(4);
   for (const double degrees : {86.0, 80.0, 84.0, 96.0}) {
     for (int k = 0; k < 15; ++k) {
-      const RectangleScene scene = threeWalls(degToRad(degrees)).transformed(random.pose(1.0));
-      const Primitives result =
-          refinePlanes(scene.sample(random), scene.rough(random, 0.03, 0.02), RefinementParams());
-      ASSERT_EQ(result.planes.size(), 3u);
-      EXPECT_NEAR(angleOf(result, 1, 2), angleBetween(scene.plane(1), scene.plane(2)),
-                  degToRad(0.1));
-      EXPECT_EQ(result.edges.size(), 2u);
-      EXPECT_NEAR(angleOf(result, 0, 1), kPi / 2.0, degToRad(0.1));
-      EXPECT_NEAR(angleOf(result, 0, 2), kPi / 2.0, degToRad(0.1));
+      const SyntheticScene scene = sampled(threeWalls(degToRad(degrees)), 0.003, random);
+      ASSERT_EQ(scene.planes.size(), 3U);
+      PlaneGraph rough = test::roughGraph(scene, 0.03, 0.02, random);
+      rough.edges.push_back({{1, 2}, 1.0});
+      const Primitives result = refinePlanes(scene.cloud, rough, RefinementParams());
+      ASSERT_EQ(result.planes.size(), 3U);
+      // 3 m walls with 3 mm noise, 2,000 samples: 0.005°.
+      EXPECT_NEAR(angleOf(result, 1, 2), angleBetween(scene.planes[1], scene.planes[2]),
+                  degToRad(0.03));
+      EXPECT_EQ(result.edges.size(), 2U);
+      EXPECT_NEAR(angleOf(result, 0, 1), kPi / 2.0, degToRad(0.03));
+      EXPECT_NEAR(angleOf(result, 0, 2), kPi / 2.0, degToRad(0.03));
     }
   }
 }
@@ -155,53 +159,51 @@ TEST(RefinePlanes, NearlyParallelWallsStayApartIfTheDataSaySo) {
   // 3 m walls with 3 mm noise fix their normals to 0.01°; 0.3° is seen, unless the sensor's
   // distortion could explain it.
   test::Random random(5);
-  RectangleScene scene = room();
-  scene.sigma = 0.003;
-  scene.rectangles[1].u += Eigen::Vector3d(std::tan(degToRad(0.3)) * 3.3, 0.0, 0.0);
-  const OrientedCloud cloud = scene.sample(random);
-  const PlaneGraph rough = scene.rough(random, 0.02, 0.02);
-  const Primitives honest = refinePlanes(cloud, rough, idealSensor());
-  ASSERT_EQ(honest.planes.size(), 6u);
+  Rectangles rectangles = room();
+  rectangles[1].half_u =
+      Eigen::AngleAxisd(degToRad(0.3), Eigen::Vector3d::UnitZ()) * rectangles[1].half_u;
+  const SyntheticScene scene = sampled(rectangles, 0.003, random);
+  PlaneGraph rough = test::roughGraph(scene, 0.02, 0.02, random);
+  rough.edges.push_back({{1, 2}, 1.0});
+  const Primitives honest = refinePlanes(scene.cloud, rough, idealSensor());
+  ASSERT_EQ(honest.planes.size(), 6U);
   EXPECT_NE(honest.planes[0].family, honest.planes[1].family);
   EXPECT_NEAR(angleOf(honest, 0, 1), kPi - degToRad(0.3), degToRad(0.03));
-  const Primitives distorted = refinePlanes(cloud, rough, RefinementParams());
+  const Primitives distorted = refinePlanes(scene.cloud, rough, RefinementParams());
   EXPECT_EQ(distorted.planes[0].family, distorted.planes[1].family);
 }
 
 TEST(RefinePlanes, MergesTwoPlanesOfOneSurfaceAndTheirEdges) {
   test::Random random(6);
-  RectangleScene scene = room();
-  scene.sigma = 0.003;
-  const OrientedCloud cloud = scene.sample(random);
-  PlaneGraph rough = scene.rough(random, 0.03, 0.02);
-  rough.nodes.push_back(scene.rough(random, 0.03, 0.02).nodes[0]);
+  const SyntheticScene scene = sampled(room(), 0.003, random);
+  PlaneGraph rough = test::roughGraph(scene, 0.03, 0.02, random);
+  rough.nodes.push_back(test::roughGraph(scene, 0.03, 0.02, random).nodes[0]);
   rough.edges.push_back({{2, 6}, 5.0});
-  const Primitives result = refinePlanes(cloud, rough, idealSensor());
-  ASSERT_EQ(result.planes.size(), 6u);
-  ASSERT_EQ(result.edges.size(), 12u);
+  const Primitives result = refinePlanes(scene.cloud, rough, idealSensor());
+  ASSERT_EQ(result.planes.size(), 6U);
+  ASSERT_EQ(result.edges.size(), 12U);
   EXPECT_EQ(result.edges[0].planes, (std::array<int, 2>{0, 2}));
   EXPECT_EQ(result.edges[0].votes, 6.0);
 }
 
 TEST(RefinePlanes, KeepsParallelSurfacesThatNoiseCanTellApart) {
   test::Random random(7);
-  RectangleScene scene = room();
-  scene.sigma = 0.002;
+  Rectangles rectangles = room();
   // A board 15 mm in front of the wall x = −2.
-  scene.rectangles.push_back(
-      {{-1.985, -0.5, -0.5}, Eigen::Vector3d::UnitY(), Eigen::Vector3d::UnitZ()});
+  rectangles.push_back({{-1.985, 0.1, 0.2}, {0.0, 0.5, 0.0}, {0.0, 0.0, 0.5}});
+  const SyntheticScene scene = sampled(rectangles, 0.002, random);
+  ASSERT_EQ(scene.planes.size(), 7U);
   const Primitives result =
-      refinePlanes(scene.sample(random), scene.rough(random, 0.002, 0.002), idealSensor());
-  ASSERT_EQ(result.planes.size(), 7u);
+      refinePlanes(scene.cloud, test::roughGraph(scene, 0.002, 0.002, random), idealSensor());
+  ASSERT_EQ(result.planes.size(), 7U);
   EXPECT_EQ(result.planes[0].family, result.planes[6].family);
   EXPECT_NEAR(std::abs(result.planes[6].plane.d() - result.planes[0].plane.d()), 0.015, 0.001);
 }
 
 TEST(RefinePlanes, DropsPlanesWithoutSamplesAndRenumbersEdges) {
   test::Random random(8);
-  const RectangleScene scene = room();
-  const OrientedCloud cloud = scene.sample(random);
-  PlaneGraph rough = scene.rough(random, 0.02, 0.02);
+  const SyntheticScene scene = sampled(room(), 0.0, random);
+  PlaneGraph rough = test::roughGraph(scene, 0.02, 0.02, random);
   PlaneNode ghost;
   ghost.plane = Plane::fromCoefficients({1.0, 1.0, 1.0}, 20.0);
   rough.nodes.insert(rough.nodes.begin(), ghost);
@@ -209,30 +211,26 @@ TEST(RefinePlanes, DropsPlanesWithoutSamplesAndRenumbersEdges) {
     edge.planes = {edge.planes[0] + 1, edge.planes[1] + 1};
   }
   rough.edges.insert(rough.edges.begin(), {{0, 1}, 3.0});
-  const Primitives result = refinePlanes(cloud, rough, idealSensor());
-  EXPECT_EQ(result.planes.size(), 6u);
-  EXPECT_EQ(result.edges.size(), 12u);
-  EXPECT_LT(angleBetween(result.planes[0].plane, scene.plane(0)), 1e-6);
+  const Primitives result = refinePlanes(scene.cloud, rough, idealSensor());
+  ASSERT_EQ(result.planes.size(), 6U);
+  EXPECT_EQ(result.edges.size(), 12U);
+  EXPECT_LT(angleBetween(result.planes[0].plane, scene.planes[0]), 1e-6);
 }
 
 TEST(RefinePlanes, OutliersDoNotMovePlanes) {
   test::Random random(9);
-  RectangleScene scene = room();
-  scene.sigma = 0.003;
-  OrientedCloud cloud = scene.sample(random);
-  const std::size_t clean = cloud.size();
-  for (std::size_t i = 0; i < clean / 2; ++i) {
-    cloud.points.push_back(random.vector(1.5).cast<float>());
-    cloud.normals.push_back(random.unitVector().cast<float>());
-    cloud.sigmas.push_back(0.003f);
-    cloud.weights.push_back(1.0f);
-  }
-  const Primitives result = refinePlanes(cloud, scene.rough(random, 0.03, 0.03), idealSensor());
-  ASSERT_EQ(result.planes.size(), 6u);
+  SyntheticOptions options;
+  options.sigma = 0.003;
+  options.outlier_ratio = 0.5;
+  const SyntheticScene scene =
+      test::sampleScene(room(), Eigen::Vector3d::Zero(), Eigen::Isometry3d::Identity(), options);
+  const Primitives result =
+      refinePlanes(scene.cloud, test::roughGraph(scene, 0.03, 0.03, random), idealSensor());
+  ASSERT_EQ(result.planes.size(), 6U);
   for (std::size_t k = 0; k < 6; ++k) {
-    // σ/√N over some 1,000 samples is 0.1 mm.
-    EXPECT_LT(angleBetween(result.planes[k].plane, scene.plane(k)), 5e-4);
-    EXPECT_NEAR(result.planes[k].plane.d(), scene.plane(k).d(), 5e-4);
+    // σ/√N over some 3,000 samples is 0.05 mm.
+    EXPECT_LT(angleBetween(result.planes[k].plane, scene.planes[k]), 5e-4);
+    EXPECT_NEAR(result.planes[k].plane.d(), scene.planes[k].d(), 5e-4);
   }
 }
 
@@ -255,7 +253,7 @@ TEST(RefinePlanes, DegenerateInputGivesFewerPlanes) {
   }
   graph.edges = {{{0, 1}, 1.0}};
   const Primitives one_point = refinePlanes(same, graph, params);
-  ASSERT_LE(one_point.planes.size(), 1u);
+  ASSERT_LE(one_point.planes.size(), 1U);
   for (const PlanePrimitive& plane : one_point.planes) {
     EXPECT_TRUE(plane.plane.coefficients().allFinite());
     EXPECT_TRUE(plane.covariance.allFinite());
