@@ -18,10 +18,18 @@ struct SensorModel {
   double noise_quadratic = 0.0015;  ///< b
   double min_range = 0.3;
   double max_range = 6.0;
+  /// Neighbouring raw points share part of their error (correlation window of structured light,
+  /// quantization, calibration): correlation coefficient ρ of any two of them.
+  double noise_correlation = 0.1;
 
   /// Standard deviation of a measured range [m].
   double sigma(double range) const {
     return std::hypot(noise_constant, noise_quadratic * range * range);
+  }
+
+  /// Standard deviation of the mean of `count` ≥ 1 neighbouring raw points of deviation `sigma`.
+  double meanSigma(double sigma, double count) const {
+    return sigma * std::sqrt((1.0 + (count - 1.0) * noise_correlation) / count);
   }
 
   template <typename Self, typename F>
@@ -32,6 +40,8 @@ struct SensorModel {
       Field{"noise_quadratic", "1/m", 0.0, 0.1, "range noise that grows with range squared"});
     f(p.min_range, Field{"min_range", "m", 0.0, 100.0, "nearer returns are ignored"});
     f(p.max_range, Field{"max_range", "m", 0.1, 1000.0, "farther returns are ignored"});
+    f(p.noise_correlation, Field{"noise_correlation", "", 0.0, 1.0,
+                                 "correlation of the errors of neighbouring raw points"});
   }
 };
 

@@ -1,0 +1,60 @@
+// SPDX-FileCopyrightText: 2026 The opp-mapping authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace opp {
+
+/// A maximum of the accumulator.
+struct VotePeak {
+  double theta = 0.0;  ///< [rad] mean of the peak's votes, in [−π/θ bins, π + ...)
+  double rho = 0.0;    ///< [m] mean of the peak's votes
+  std::vector<std::uint32_t> voters;  ///< as given to `cast`; empty: no votes are left
+};
+
+/// Accumulator over (θ, ρ) of one reference point. (θ, ρ) and (θ + π, −ρ) are the same plane: θ is
+/// folded to [0, π), and the table wraps around there with ρ mirrored. A peak is the 3 × 3 bins
+/// about its centre, so that no bin edge can split it.
+class VoteTable {
+ public:
+  /// Bins of π / theta_bins and 2 radius / rho_bins.
+  VoteTable(int theta_bins, int rho_bins, double radius);
+
+  /// One vote. θ ∈ [−2π, 2π] [rad], |ρ| ≤ radius [m]; `voter` comes back with the peak.
+  void cast(float theta, float rho, std::uint32_t voter);
+  /// Takes the 3 × 3 bins with most votes out of the table (the one cast first wins ties); the next
+  /// call finds the next peak. O(votes).
+  VotePeak takePeak();
+  /// Votes still in the table.
+  std::size_t votes() const { return votes_.size(); }
+  void clear();
+
+ private:
+  struct Vote {
+    float theta, rho;
+    std::int32_t theta_bin, rho_bin;
+    std::uint32_t voter;
+  };
+  struct Bin {
+    std::int32_t theta, rho;
+  };
+  int index(Bin bin) const { return bin.theta * rho_bins_ + bin.rho; }
+  Bin wrapped(Bin bin) const;
+  int windowVotes(Bin center) const;
+  bool inWindow(const Vote& vote, Bin center, double& theta, double& rho) const;
+
+  int theta_bins_, rho_bins_;
+  float radius_;
+  std::vector<std::int32_t> counts_;
+  std::vector<Vote> votes_;
+};
+
+/// Smallest number of votes in a peak that accidental votes reach less than `false_alarms` times
+/// in `windows` places, if they fall into each with expectation `mean` (Chernoff's bound of the
+/// Poisson distribution). At least 3: fewer points fix no plane.
+int significantVotes(double mean, double windows, double false_alarms);
+
+}  // namespace opp

@@ -1,0 +1,238 @@
+// SPDX-FileCopyrightText: 2026 The opp-mapping authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "opp/graph/build_plane_graph.h"
+
+#include "opp/graph/union_find.h"
+
+#include "graph/plane_support.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numeric>
+#include <utility>
+
+namespace opp {
+namespace {
+
+/// A plane under construction; stands for the hypotheses of one set.
+struct Cluster {
+  Plane plane;
+  PointMoments moments;
+  double votes = 0.0;
+  double samples = 0.0;
+  std::size_t hypothesis = 0;  ///< representative of the set
+};
+
+struct Builder {
+  const OrientedCloud& cloud;
+  const OppHypotheses& hypotheses;
+  const GraphParams& params;
+  SampleAssigner assigner;
+  UnionFind sets;
+  std::vector<Cluster> clusters;
+  std::vector<int> labels;  ///< cluster of each sample; −1: none
+};
+
+std::vector<std::size_t> descending(std::size_t count, const std::vector<double>& keys) {
+  std::vector<std::size_t> order(count);
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t a, std::size_t b) { return keys[a] > keys[b]; });
+  return order;
+}
+
+/// Is each anchor near the other hypothesis' plane, and are the normals alike? The reach grows with
+/// the anchors' distance, as the effect of a plane's angular error does.
+bool similar(const PlaneHypothesis& a, const PlaneHypothesis& b, double reach, double angle) {
+  const double cosine = std::abs(a.plane.normal().dot(b.plane.normal()));
+  if (cosine < std::cos(angle)) return false;
+  return std::abs(a.plane.signedDistance(b.anchor)) < reach &&
+         std::abs(b.plane.signedDistance(a.anchor)) < reach;
+}
+
+/// Strongest hypotheses first, each joins the strongest earlier one that it is similar to.
+void gatherHypotheses(Builder& builder) {
+  const auto& planes = builder.hypotheses.planes;
+  std::vector<double> votes;
+  for (const PlaneHypothesis& hypothesis : planes) votes.push_back(hypothesis.votes);
+  // Half the least distance of parallel surfaces that the samples can tell apart.
+  const double reach = 0.5 * builder.cloud.spacing;
+  for (const std::size_t h : descending(planes.size(), votes)) {
+    const auto leader =
+        std::find_if(builder.clusters.begin(), builder.clusters.end(), [&](const Cluster& cluster) {
+          return similar(planes[cluster.hypothesis], planes[h], reach, builder.params.merge_angle);
+        });
+    if (leader == builder.clusters.end()) {
+      builder.clusters.push_back({planes[h].plane, {}, votes[h], 0.0, h});
+    } else {
+      builder.sets.join(leader->hypothesis, h);
+      leader->votes += votes[h];
+    }
+  }
+}
+
+std::vector<Plane> planesOf(const Builder& builder) {
+  std::vector<Plane> planes;
+  for (const Cluster& cluster : builder.clusters) planes.push_back(cluster.plane);
+  return planes;
+}
+
+/// Gives the samples to the clusters, fits these, and drops clusters that no sample fixes.
+void assignAndFit(Builder& builder) {
+  builder.labels = builder.assigner.assign(planesOf(builder));
+  const auto moments = builder.assigner.moments(builder.labels, builder.clusters.size());
+  std::vector<int> counts(builder.clusters.size());
+  for (const int label : builder.labels) {
+    if (label >= 0) ++counts[static_cast<std::size_t>(label)];
+  }
+  std::vector<Cluster> kept;
+  const Eigen::Vector3d viewpoint = builder.cloud.viewpoint.cast<double>();
+  for (std::size_t c = 0; c < builder.clusters.size(); ++c) {
+    if (counts[c] < std::max(3.0, builder.params.min_area)) continue;
+    kept.push_back(builder.clusters[c]);
+    kept.back().moments = moments[c];
+    kept.back().samples = counts[c];
+    kept.back().plane = moments[c].fitPlane(viewpoint);
+  }
+  builder.clusters = std::move(kept);
+}
+
+/// Mean squared distance of the points from the plane [m²].
+double meanSquare(const PointMoments& moments, const Plane& plane) {
+  return moments.squaredError(plane) / moments.weight();
+}
+
+/// Would the samples of both clusters still lie within the noise of their common plane? Tested for
+/// each part, so that a large plane cannot swallow a small parallel one. Two copies of one plane
+/// share its samples, each having the nearer ones: at worst these spread evenly over the gate, with
+/// variance gate²/3. Parallel surfaces more than 2 gate / √3 apart always stay two.
+bool mergeable(const Builder& builder, const Cluster& a, const Cluster& b) {
+  if (std::abs(a.plane.normal().dot(b.plane.normal())) < std::cos(builder.params.merge_angle)) {
+    return false;
+  }
+  PointMoments both = a.moments;
+  both.merge(b.moments);
+  const Plane plane = both.fitPlane(builder.cloud.viewpoint.cast<double>());
+  const auto fits = [&](const Cluster& part) {
+    const double sigma = std::sqrt(part.samples / part.moments.weight());
+    const double gate =
+        builder.params.noise_gate * sigma + builder.params.flatness * builder.cloud.spacing;
+    return meanSquare(part.moments, plane) < gate * gate / 3.0;
+  };
+  return fits(a) && fits(b);
+}
+
+/// Union of clusters that are one plane, strongest first.
+void mergeClusters(Builder& builder) {
+  std::vector<double> weights;
+  for (const Cluster& cluster : builder.clusters) weights.push_back(cluster.moments.weight());
+  std::vector<Cluster> merged;
+  const Eigen::Vector3d viewpoint = builder.cloud.viewpoint.cast<double>();
+  for (const std::size_t c : descending(builder.clusters.size(), weights)) {
+    const Cluster& cluster = builder.clusters[c];
+    const auto host = std::find_if(merged.begin(), merged.end(), [&](const Cluster& other) {
+      return mergeable(builder, other, cluster);
+    });
+    if (host == merged.end()) {
+      merged.push_back(cluster);
+      continue;
+    }
+    builder.sets.join(host->hypothesis, cluster.hypothesis);
+    host->moments.merge(cluster.moments);
+    host->plane = host->moments.fitPlane(viewpoint);
+    host->votes += cluster.votes;
+    host->samples += cluster.samples;
+  }
+  builder.clusters = std::move(merged);
+}
+
+std::vector<std::vector<int>> samplesOf(const Builder& builder) {
+  std::vector<std::vector<int>> samples(builder.clusters.size());
+  for (std::size_t i = 0; i < builder.labels.size(); ++i) {
+    if (builder.labels[i] < 0) continue;
+    samples[static_cast<std::size_t>(builder.labels[i])].push_back(static_cast<int>(i));
+  }
+  return samples;
+}
+
+/// Drops clusters without a connected patch, large and wide enough, of samples that no stronger
+/// cluster explains: copies of a plane, and planes that cut through others (a slope along a stair).
+void dropUnsupported(Builder& builder) {
+  std::stable_sort(builder.clusters.begin(), builder.clusters.end(),
+                   [](const Cluster& a, const Cluster& b) { return a.samples > b.samples; });
+  builder.labels = builder.assigner.assignToFirst(planesOf(builder));
+  const auto samples = samplesOf(builder);
+  std::vector<Cluster> kept;
+  const double spacing = builder.cloud.spacing;
+  for (std::size_t c = 0; c < builder.clusters.size(); ++c) {
+    const SupportPatch patch = largestPatch(builder.cloud, builder.clusters[c].plane, samples[c]);
+    if (patch.area >= builder.params.min_area * spacing * spacing &&
+        patch.width >= builder.params.min_width * spacing) {
+      kept.push_back(builder.clusters[c]);
+    }
+  }
+  builder.clusters = std::move(kept);
+}
+
+/// Orthogonal votes between clusters; keys in ascending order.
+std::map<std::array<int, 2>, double> edgeVotes(Builder& builder) {
+  std::vector<int> node_of(builder.hypotheses.planes.size(), -1);
+  for (std::size_t c = 0; c < builder.clusters.size(); ++c) {
+    node_of[builder.sets.root(builder.clusters[c].hypothesis)] = static_cast<int>(c);
+  }
+  std::map<std::array<int, 2>, double> votes;
+  for (const OrthogonalPair& pair : builder.hypotheses.pairs) {
+    const int a = node_of[builder.sets.root(static_cast<std::size_t>(pair.reference))];
+    const int b = node_of[builder.sets.root(static_cast<std::size_t>(pair.partner))];
+    if (a >= 0 && b >= 0 && a != b) votes[{std::min(a, b), std::max(a, b)}] += pair.votes;
+  }
+  return votes;
+}
+
+std::vector<OrthogonalityEdge> findEdges(Builder& builder) {
+  const auto samples = samplesOf(builder);
+  const double spacing = builder.cloud.spacing;
+  std::vector<OrthogonalityEdge> edges;
+  for (const auto& [planes, votes] : edgeVotes(builder)) {
+    const auto a = static_cast<std::size_t>(planes[0]), b = static_cast<std::size_t>(planes[1]);
+    const Plane &plane_a = builder.clusters[a].plane, &plane_b = builder.clusters[b].plane;
+    const double cosine = plane_a.normal().dot(plane_b.normal());
+    if (std::abs(cosine) > std::sin(builder.params.orthogonality)) continue;
+    const double length = commonEdgeLength(builder.cloud, plane_a, samples[a], plane_b, samples[b],
+                                           builder.params.edge_reach * spacing);
+    if (length >= builder.params.min_edge_length * spacing) edges.push_back({planes, votes});
+  }
+  return edges;
+}
+
+}  // namespace
+
+PlaneGraph buildPlaneGraph(const OrientedCloud& cloud, const OppHypotheses& hypotheses,
+                           const SensorModel& sensor, const GraphParams& params) {
+  validate(params);
+  if (hypotheses.planes.empty()) return {};
+  Builder builder{cloud,
+                  hypotheses,
+                  params,
+                  SampleAssigner(cloud, sensor, params),
+                  UnionFind(hypotheses.planes.size()),
+                  {},
+                  {}};
+  gatherHypotheses(builder);
+  for (int round = 0; round < params.rounds; ++round) {
+    assignAndFit(builder);
+    mergeClusters(builder);
+  }
+  assignAndFit(builder);
+  dropUnsupported(builder);
+  assignAndFit(builder);  // the samples of dropped planes may support others
+  PlaneGraph graph;
+  for (const Cluster& cluster : builder.clusters) {
+    graph.nodes.push_back({cluster.plane, cluster.moments, cluster.votes});
+  }
+  graph.edges = findEdges(builder);
+  return graph;
+}
+
+}  // namespace opp

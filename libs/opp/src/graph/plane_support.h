@@ -1,0 +1,58 @@
+// SPDX-FileCopyrightText: 2026 The opp-mapping authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "opp/cloud/sensor_model.h"
+#include "opp/geometry/plane.h"
+#include "opp/geometry/point_cloud.h"
+#include "opp/geometry/point_moments.h"
+#include "opp/graph/graph_params.h"
+
+#include <Eigen/Core>
+
+#include <vector>
+
+namespace opp {
+
+/// Gives each sample to the nearest plane whose gates it passes.
+class SampleAssigner {
+ public:
+  SampleAssigner(const OrientedCloud& cloud, const SensorModel& sensor, const GraphParams& params);
+
+  /// Index of the plane of each sample; −1: none. O(samples × planes), without branches.
+  std::vector<int> assign(const std::vector<Plane>& planes) const;
+  /// Index of the first plane whose gates each sample passes; −1: none. With the planes in order of
+  /// strength: what each plane explains and no stronger one does.
+  std::vector<int> assignToFirst(const std::vector<Plane>& planes) const;
+  /// Moments of each plane's samples, weights 1/σ² of the sample [1/m²].
+  std::vector<PointMoments> moments(const std::vector<int>& labels, std::size_t planes) const;
+
+ private:
+  /// visit(sample, distance, normals parallel) for each sample; the compiler vectorizes it.
+  template <typename Visit>
+  void forEachCandidate(const Plane& plane, const Visit& visit) const;
+
+  const OrientedCloud& cloud_;
+  float cos_normal_gate_;
+  Eigen::ArrayX3f points_, normals_;
+  Eigen::ArrayXf gates_;
+  std::vector<double> weights_;
+};
+
+/// Largest connected patch of a plane's samples.
+struct SupportPatch {
+  double area = 0.0;   ///< [m²] samples × spacing²
+  double width = 0.0;  ///< [m] of the rectangle with the same least second moment
+};
+
+/// Samples are connected if they lie in neighbouring cells (8-neighbourhood) of a grid of twice the
+/// spacing. O(n log n).
+SupportPatch largestPatch(const OrientedCloud& cloud, const Plane& plane,
+                          const std::vector<int>& samples);
+
+/// Length [m] of the stretches of the planes' common line along which both have samples within
+/// `reach` of it. Zero for parallel planes.
+double commonEdgeLength(const OrientedCloud& cloud, const Plane& a, const std::vector<int>& on_a,
+                        const Plane& b, const std::vector<int>& on_b, double reach);
+
+}  // namespace opp
