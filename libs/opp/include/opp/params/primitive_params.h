@@ -3,17 +3,26 @@
 #pragma once
 
 #include "opp/cloud/sensor_model.h"
+#include "opp/detection/voting_params.h"
+#include "opp/graph/graph_params.h"
+#include "opp/refinement/refinement_params.h"
 
 namespace opp {
 
 /// Parameters of all stages from raw points to primitives.
 struct PrimitiveParams {
   SensorModel sensor;
+  VotingParams voting;
+  GraphParams graph;
+  RefinementParams refinement;
 
   /// Calls f(section) for each stage, in the order of the stages.
   template <typename Self, typename F>
   static void visitSections(Self&& p, F&& f) {
     f(p.sensor);
+    f(p.voting);
+    f(p.graph);
+    f(p.refinement);
   }
 };
 

@@ -1,0 +1,20 @@
+// SPDX-FileCopyrightText: 2026 The opp-mapping authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "opp/geometry/point_cloud.h"
+#include "opp/params/primitive_params.h"
+#include "opp/primitives/primitives.h"
+#include "opp/primitives/stage_timings.h"
+
+namespace opp {
+
+/// Planes and their orthogonality in one scan (Sommer et al. 2020, III and IV): votes for
+/// orthogonal plane pairs, their graph, and its joint refinement. Everything is in the cloud's
+/// frame. Empty for clouds of fewer than three samples. Same result for every `threads` (≤ 0: all
+/// cores). Fills `timings` unless null.
+/// \throws std::invalid_argument if a parameter is out of range.
+Primitives detectPrimitives(const OrientedCloud& cloud, const PrimitiveParams& params,
+                            int threads = 1, StageTimings* timings = nullptr);
+
+}  // namespace opp

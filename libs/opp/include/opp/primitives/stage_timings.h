@@ -1,0 +1,14 @@
+// SPDX-FileCopyrightText: 2026 The opp-mapping authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+namespace opp {
+
+/// Wall time of each stage of `detectPrimitives` [s].
+struct StageTimings {
+  double voting = 0.0;
+  double clustering = 0.0;
+  double refinement = 0.0;
+};
+
+}  // namespace opp

@@ -1,0 +1,44 @@
+// SPDX-FileCopyrightText: 2026 The opp-mapping authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "opp/detect_primitives.h"
+
+#include "opp/detection/detect_opps.h"
+#include "opp/graph/build_plane_graph.h"
+#include "opp/refinement/refine_planes.h"
+
+#include <chrono>
+
+namespace opp {
+namespace {
+
+class Stopwatch {
+ public:
+  /// Seconds since construction or the last lap.
+  double lap() {
+    const auto now = std::chrono::steady_clock::now();
+    const std::chrono::duration<double> elapsed = now - start_;
+    start_ = now;
+    return elapsed.count();
+  }
+
+ private:
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
+}  // namespace
+
+Primitives detectPrimitives(const OrientedCloud& cloud, const PrimitiveParams& params, int threads,
+                            StageTimings* timings) {
+  StageTimings laps;
+  Stopwatch stopwatch;
+  const OppHypotheses hypotheses = detectOpps(cloud, params.sensor, params.voting, threads);
+  laps.voting = stopwatch.lap();
+  const PlaneGraph graph = buildPlaneGraph(cloud, hypotheses, params.sensor, params.graph);
+  laps.clustering = stopwatch.lap();
+  Primitives primitives = refinePlanes(cloud, graph, params.refinement);
+  laps.refinement = stopwatch.lap();
+  if (timings != nullptr) *timings = laps;
+  return primitives;
+}
+
+}  // namespace opp
