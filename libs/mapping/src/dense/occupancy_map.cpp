@@ -47,13 +47,15 @@ struct LeafUpdate {
   }
 };
 
-/// octomap::AbstractOcTree::write without its message on stderr.
-bool writeFullTree(const octomap::OcTree& tree, std::ostream& stream) {
-  stream << "# Octomap OcTree file\n"
+/// octomap's writeBinary without its message on stderr; leaves the tree in its most likely state.
+bool writeBinaryTree(octomap::OcTree& tree, std::ostream& stream) {
+  tree.toMaxLikelihood();
+  tree.prune();
+  stream << "# Octomap OcTree binary file\n"
             "# (feel free to add / change comments, but leave the first line as it is!)\n#\n"
          << "id " << tree.getTreeType() << "\nsize " << tree.size() << "\nres "
          << tree.getResolution() << "\ndata\n";
-  return tree.writeData(stream).good();
+  return tree.writeBinaryData(stream).good();
 }
 
 }  // namespace
@@ -168,11 +170,12 @@ void OccupancyMap::write(const std::filesystem::path& full_tree,
   const auto check = [](bool written, const std::filesystem::path& path) {
     if (!written) throw std::runtime_error(path.string() + " cannot be written as an OctoMap");
   };
-  // The full tree first: writing the binary one reduces the tree to its most likely state.
+  // The full tree first: writing the binary one changes the tree.
   writeFileAtomically(full_tree,
-                      [&](std::ostream& stream) { check(writeFullTree(tree, stream), full_tree); });
-  writeFileAtomically(binary_tree,
-                      [&](std::ostream& stream) { check(tree.writeBinary(stream), binary_tree); });
+                      [&](std::ostream& stream) { check(tree.write(stream), full_tree); });
+  writeFileAtomically(binary_tree, [&](std::ostream& stream) {
+    check(writeBinaryTree(tree, stream), binary_tree);
+  });
 }
 
 OccupancyScan occupancyScan(const std::vector<Eigen::Vector3f>& points_in_body,
