@@ -1,0 +1,44 @@
+// SPDX-FileCopyrightText: 2026 The opp-mapping authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "plane_coordinates.h"
+
+#include <Eigen/Core>
+
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+namespace opp::mapping {
+
+/// Counts the pixels on one side of a face in square cells. Cells of coplanar sides coincide.
+class Coverage {
+ public:
+  Coverage(const Face& face, const Plane& side_plane, double cell);
+
+  /// Counts a pixel at a point of the plane; points outside of the face's rectangle count into its
+  /// nearest cell.
+  void add(const Eigen::Vector3d& point);
+  std::uint64_t total() const { return total_; }
+  /// Whether a cell of the 3 × 3 around the point was seen.
+  bool seenNear(const Eigen::Vector3d& point) const;
+  /// Calls `visit(centre, pixels)` for each seen cell, row by row.
+  void forEachSeen(const std::function<void(const Eigen::Vector3d&, std::uint32_t)>& visit) const;
+  /// Seen cells as rectangles, one for each run of a row.
+  void appendRuns(std::vector<Polygon2d>& runs) const;
+  const PlaneCoordinates& coordinates() const { return coordinates_; }
+
+ private:
+  Eigen::Vector2i cellOf(const Eigen::Vector3d& point) const;  ///< relative to first_
+  std::uint32_t count(int u, int v) const;
+
+  PlaneCoordinates coordinates_;
+  double cell_;
+  Eigen::Vector2i first_;  ///< cell number of the grid's corner; cell (0, 0) begins at uv = 0
+  Eigen::Vector2i size_;
+  std::vector<std::uint32_t> counts_;
+  std::uint64_t total_ = 0;
+};
+
+}  // namespace opp::mapping

@@ -1,0 +1,112 @@
+// SPDX-FileCopyrightText: 2026 The opp-mapping authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "seen_plane.h"
+
+#include <Eigen/LU>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+namespace opp::mapping {
+namespace {
+
+constexpr double kTouch = 1e-6;  ///< as for lines [m]
+
+Eigen::Vector3d commonPoint(const SeenPlane& a, const SeenPlane& b, const SeenPlane& c) {
+  Eigen::Matrix3d normals;
+  normals << a.plane.normal().transpose(), b.plane.normal().transpose(),
+      c.plane.normal().transpose();
+  return normals.partialPivLu().solve(-Eigen::Vector3d(a.plane.d(), b.plane.d(), c.plane.d()));
+}
+
+bool touches(const Geos& geos, const SeenPlane& plane, const Eigen::Vector3d& point) {
+  const auto h = geos.handle();
+  const Eigen::Vector2d uv = plane.coordinates().uv(point);
+  const auto place = geos.own(GEOSGeom_createPointFromXY_r(h, uv.x(), uv.y()));
+  double distance = 0.0;
+  GEOSDistance_r(h, plane.outline.get(), place.get(), &distance);
+  return distance <= kTouch;
+}
+
+std::uint64_t pixelsNear(const SeenPlane& plane, const Eigen::Vector3d& point, double reach) {
+  std::uint64_t result = 0;
+  for (const Coverage* coverage : plane.coverages) {
+    coverage->forEachSeen([&](const Eigen::Vector3d& centre, std::uint32_t pixels) {
+      if ((centre - point).norm() <= reach) result += pixels;
+    });
+  }
+  return result;
+}
+
+/// Concave or convex where all three lines that meet here are; saddle where they differ; unknown
+/// where one of them was not seen.
+CornerKind kindOf(const std::array<int, 3>& ids, const Eigen::Vector3d& point,
+                  const std::vector<SeenLine>& lines, double reach) {
+  int concave = 0, convex = 0;
+  for (const std::array<int, 2>& pair :
+       {std::array<int, 2>{ids[0], ids[1]}, {ids[0], ids[2]}, {ids[1], ids[2]}}) {
+    for (const SeenLine& line : lines) {
+      if (line.planes != pair ||
+          std::min((line.start - point).norm(), (line.end - point).norm()) > reach) {
+        const Eigen::Vector3d along = (line.end - line.start).normalized();
+        const double s = along.dot(point - line.start);
+        const bool inside = s > 0.0 && s < (line.end - line.start).norm();
+        if (line.planes != pair || !inside) continue;
+      }
+      ++(line.kind == LineKind::kConcave ? concave : convex);
+      break;
+    }
+  }
+  if (concave + convex < 3) return CornerKind::kUnknown;
+  if (concave == 3) return CornerKind::kConcave;
+  return convex == 3 ? CornerKind::kConvex : CornerKind::kSaddle;
+}
+
+Eigen::Quaterniond orientationOf(const SeenPlane& a, const SeenPlane& b, const SeenPlane& c) {
+  Eigen::Matrix3d axes;
+  axes << a.plane.normal(), b.plane.normal(), c.plane.normal();
+  if (axes.determinant() < 0.0) axes.col(2) = -axes.col(2);
+  return Eigen::Quaterniond(axes).normalized();
+}
+
+}  // namespace
+
+std::vector<PlanarMapCorner> seenCorners(const Geos& geos, const std::vector<SeenPlane>& planes,
+                                         const std::vector<Seam>& seams,
+                                         const std::vector<SeenLine>& lines,
+                                         const GroundTruthParams& params) {
+  std::set<std::array<int, 2>> touching;
+  for (const Seam& seam : seams) touching.insert(seam.planes);
+  const auto enough = static_cast<std::uint64_t>(params.min_pixels);
+  std::vector<PlanarMapCorner> result;
+  for (const auto& [i, j] : touching) {
+    for (auto next = touching.upper_bound({j, j}); next != touching.end() && (*next)[0] == j;
+         ++next) {
+      const int k = (*next)[1];
+      if (touching.count({i, k}) == 0) continue;
+      const SeenPlane& a = planes[static_cast<std::size_t>(i)];
+      const SeenPlane& b = planes[static_cast<std::size_t>(j)];
+      const SeenPlane& c = planes[static_cast<std::size_t>(k)];
+      const Eigen::Vector3d point = commonPoint(a, b, c);
+      std::uint64_t total = 0, least = enough;
+      for (const SeenPlane* plane : {&a, &b, &c}) {
+        const bool seen = plane->seenNear(point) && touches(geos, *plane, point);
+        const std::uint64_t pixels = seen ? pixelsNear(*plane, point, params.reach) : 0;
+        total += pixels;
+        least = std::min(least, pixels);
+      }
+      if (total < enough || 10 * least < enough) continue;
+      PlanarMapCorner corner;
+      corner.id = static_cast<int>(result.size());
+      corner.planes = {i, j, k};
+      corner.position = point;
+      corner.orientation = orientationOf(a, b, c);
+      corner.kind = kindOf(corner.planes, point, lines, params.reach);
+      result.push_back(corner);
+    }
+  }
+  return result;
+}
+
+}  // namespace opp::mapping
