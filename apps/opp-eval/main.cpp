@@ -1,63 +1,58 @@
 // SPDX-FileCopyrightText: 2026 The opp-mapping authors
 // SPDX-License-Identifier: BSD-3-Clause
 // opp-eval: how far an estimate is from the truth.
-#include "opp/mapping/core/version.h"
+#include "opp/mapping/evaluation/primitive_error.h"
 #include "opp/mapping/evaluation/trajectory_error.h"
 #include "opp/mapping/io/tum_trajectory.h"
 
+#include "common/flags.h"
+#include "common/run_main.h"
+#include "opp-eval/primitive_report.h"
 #include "opp-eval/trajectory_report.h"
 
-#include <tclap/CmdLine.h>
-
+#include <filesystem>
 #include <iostream>
-#include <sstream>
 #include <stdexcept>
 #include <string>
 
 namespace {
 
+using opp::apps::CommandLine;
+using opp::apps::UsageError;
 using opp::mapping::Trajectory;
 using Json = nlohmann::ordered_json;
 
-/// What the command line asks for.
-struct Options {
-  std::string gt;
-  std::string est;
+/// All thresholds of the comparison, for -c and --set.
+struct EvaluationParams {
   opp::mapping::TrajectoryErrorParams trajectory;
-  bool json = false;
+  opp::mapping::PrimitiveErrorParams primitives;
+
+  template <typename Self, typename F>
+  static void visitSections(Self&& p, F&& f) {
+    f(p.trajectory.association);
+    f(p.trajectory);
+    f(p.primitives);
+  }
 };
 
-/// \throws TCLAP::ArgException or TCLAP::ExitException
-Options parse(int argc, char** argv) {
-  TCLAP::CmdLine cmd("Compares an estimate with ground truth and prints the errors.", ' ',
-                     std::string(opp::mapping::version()));
-  cmd.setExceptionHandling(false);
-  Options options;
-  const auto& association = options.trajectory.association;
-  TCLAP::ValueArg<std::string> gt("", "gt", "true trajectory (TUM text)", false, "", "FILE.tum",
-                                  cmd);
-  TCLAP::ValueArg<std::string> est("", "est", "estimated trajectory (TUM text)", false, "",
-                                   "FILE.tum", cmd);
-  TCLAP::ValueArg<double> max_gap("", "max-interpolation-gap",
-                                  "true poses up to this far apart are interpolated between [s]",
-                                  false, association.max_interpolation_gap, "seconds", cmd);
-  TCLAP::ValueArg<double> max_difference("", "max-time-difference",
-                                         "else the nearest true pose within this is taken [s]",
-                                         false, association.max_time_difference, "seconds", cmd);
-  TCLAP::ValueArg<double> rpe_distance(
-      "", "rpe-distance", "path length over which the relative error per metre is taken [m]", false,
-      options.trajectory.rpe_distance, "metres", cmd);
-  TCLAP::SwitchArg json("", "json", "print JSON instead of a table", cmd);
-  cmd.parse(argc, argv);
-  if (gt.isSet() != est.isSet()) throw TCLAP::CmdLineParseException("--gt and --est go together");
-  if (!gt.isSet()) throw TCLAP::CmdLineParseException("nothing to compare: give --gt and --est");
-  options.gt = gt.getValue();
-  options.est = est.getValue();
-  options.trajectory.association = {max_gap.getValue(), max_difference.getValue()};
-  options.trajectory.rpe_distance = rpe_distance.getValue();
-  options.json = json.getValue();
-  return options;
-}
+/// A flag for the truth and one for the estimate, which go together.
+struct PairFlags {
+  PairFlags(CommandLine& line, const std::string& suffix, const std::string& what,
+            const std::string& type)
+      : gt("", "gt" + suffix, "True " + what, false, "", type, line),
+        est("", "est" + suffix, "Estimated " + what, false, "", type, line) {}
+
+  /// \throws UsageError if only one of the two is given.
+  bool given() {
+    if (gt.isSet() != est.isSet()) {
+      throw UsageError("--" + gt.getName() + " and --" + est.getName() + " go together");
+    }
+    return gt.isSet();
+  }
+
+  TCLAP::ValueArg<std::string> gt;
+  TCLAP::ValueArg<std::string> est;
+};
 
 Trajectory readPoses(const std::string& path) {
   Trajectory trajectory = opp::mapping::readTumTrajectory(std::filesystem::path(path));
@@ -65,31 +60,54 @@ Trajectory readPoses(const std::string& path) {
   return trajectory;
 }
 
-void run(const Options& options) {
-  const Trajectory ground_truth = readPoses(options.gt);
-  const Trajectory estimate = readPoses(options.est);
-  const auto error = opp::mapping::trajectoryError(ground_truth, estimate, options.trajectory);
-  if (options.json) {
-    std::cout << Json{{"trajectory", opp::mapping::toJson(error)}}.dump(2) << '\n';
+/// Adds a result to the JSON or prints its table.
+template <typename Result>
+void report(const Result& result, const std::string& key, bool as_json, Json& json) {
+  if (as_json) {
+    json[key] = opp::mapping::toJson(result);
   } else {
-    opp::mapping::print(std::cout, error);
+    opp::mapping::print(std::cout, result);
   }
+}
+
+void run(CommandLine& line) {
+  PairFlags poses(line, "", "trajectory (TUM text)", "FILE.tum");
+  PairFlags planes(line, "-planes",
+                   "planes, lines and corners, or a folder of such files; with --gt and --est they "
+                   "are aligned as the trajectories are",
+                   "FILE.json");
+  opp::apps::ParameterFlags parameters(line);
+  TCLAP::SwitchArg list("", "list-parameters", "Print all thresholds and end", line);
+  TCLAP::SwitchArg as_json("", "json", "Print JSON instead of tables", line);
+  line.parse();
+
+  EvaluationParams params;
+  parameters.applyTo(params);
+  if (list.getValue()) return opp::mapping::writeParameterTable(std::cout, params);
+  const bool have_poses = poses.given();
+  const bool have_planes = planes.given();
+  if (!have_poses && !have_planes) {
+    throw UsageError("nothing to compare: give --gt and --est, or --gt-planes and --est-planes");
+  }
+  Json json;
+  Eigen::Isometry3d gt_from_est = Eigen::Isometry3d::Identity();
+  if (have_poses) {
+    const auto error = opp::mapping::trajectoryError(
+        readPoses(poses.gt.getValue()), readPoses(poses.est.getValue()), params.trajectory);
+    gt_from_est = error.gt_from_est;
+    report(error, "trajectory", as_json.getValue(), json);
+  }
+  if (have_planes) {
+    const auto comparison = opp::mapping::compareFiles(planes.gt.getValue(), planes.est.getValue(),
+                                                       params.primitives, gt_from_est);
+    report(comparison, "primitives", as_json.getValue(), json);
+  }
+  if (as_json.getValue()) std::cout << json.dump(2) << '\n';
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  try {
-    run(parse(argc, argv));
-    return 0;
-  } catch (const TCLAP::ExitException& exit) {
-    return exit.getExitStatus();
-  } catch (const TCLAP::ArgException& wrong) {
-    std::cerr << "opp-eval: " << wrong.error() << " " << wrong.argId()
-              << "\nopp-eval --help lists the flags\n";
-    return 2;
-  } catch (const std::exception& failure) {
-    std::cerr << "opp-eval: " << failure.what() << '\n';
-    return 1;
-  }
+  return opp::apps::runMain(argc, argv, "opp-eval",
+                            "Compares an estimate with the truth and prints the errors.", run);
 }

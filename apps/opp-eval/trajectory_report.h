@@ -10,10 +10,6 @@
 
 namespace opp::mapping {
 
-/// {"count", "rmse", "mean", "median", "p90", "max"}, values times `factor`; null where there was
-/// nothing to measure.
-nlohmann::ordered_json toJson(const ErrorStatistics& statistics, double factor = 1.0);
-
 /// All of TrajectoryError, for --json; units are part of the keys.
 nlohmann::ordered_json toJson(const TrajectoryError& error);
 

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "opp/mapping/io/tum_trajectory.h"
 
+#include "opp/mapping/io/atomic_file.h"
+
 #include <algorithm>
 #include <array>
 #include <charconv>
@@ -135,16 +137,7 @@ std::string formatTumTrajectory(const Trajectory& trajectory) {
 
 void writeTumTrajectory(const std::filesystem::path& path, const Trajectory& trajectory) {
   const std::string text = formatTumTrajectory(trajectory);
-  const std::filesystem::path temporary = path.string() + ".tmp";
-  std::ofstream file(temporary, std::ios::binary);
-  file << text;
-  file.close();
-  if (!file) {
-    std::error_code ignored;
-    std::filesystem::remove(temporary, ignored);
-    throw std::runtime_error(path.string() + ": cannot be written");
-  }
-  std::filesystem::rename(temporary, path);
+  writeFileAtomically(path, [&](std::ostream& stream) { stream << text; });
 }
 
 }  // namespace opp::mapping

@@ -1,0 +1,52 @@
+// SPDX-FileCopyrightText: 2026 The opp-mapping authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "opp/mapping/evaluation/statistics.h"
+
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+namespace opp::mapping {
+
+/// Matches of one kind of primitive, in one scene or added up over many.
+struct PrimitiveTally {
+  std::size_t gt = 0;           ///< true elements
+  std::size_t est = 0;          ///< estimated elements
+  std::size_t gt_found = 0;     ///< true elements that were found
+  std::size_t est_correct = 0;  ///< estimated elements that are a true one
+  std::vector<double> angles;   ///< of each matched pair [rad]
+  /// Of each matched pair [m]: planes: offset at the true centroid; lines and corners: distance.
+  std::vector<double> distances;
+
+  /// est_correct / est; nothing if nothing was estimated.
+  std::optional<double> precision() const;
+  /// gt_found / gt; nothing if nothing is true.
+  std::optional<double> recall() const;
+  void add(const PrimitiveTally& other);
+};
+
+/// Claims that two planes are orthogonal.
+struct OrthogonalityTally {
+  std::size_t claimed = 0;
+  std::size_t checked = 0;  ///< both planes are true ones, so that the true angle is known
+  std::size_t wrong = 0;    ///< of those checked, not orthogonal in truth
+
+  /// wrong / checked; nothing if nothing was checked.
+  std::optional<double> falseRate() const;
+  void add(const OrthogonalityTally& other);
+};
+
+/// Result of comparePrimitives; sums over many scans with `add`.
+struct PrimitiveTallies {
+  std::size_t maps = 0;  ///< compared
+  PrimitiveTally planes;
+  PrimitiveTally lines;
+  PrimitiveTally corners;
+  OrthogonalityTally orthogonality;
+
+  void add(const PrimitiveTallies& other);
+};
+
+}  // namespace opp::mapping

@@ -1,0 +1,39 @@
+// SPDX-FileCopyrightText: 2026 The opp-mapping authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "evaluation/primitive_matching.h"
+
+#include "opp/mapping/evaluation/assignment.h"
+
+namespace opp::mapping {
+
+PrimitiveMatching matchPrimitives(
+    std::size_t gt_count, std::size_t est_count, const std::vector<PrimitiveCandidate>& candidates,
+    const std::function<bool(std::size_t, std::size_t)>& same_in_truth) {
+  std::vector<AssignmentCandidate> edges;
+  for (const PrimitiveCandidate& c : candidates) edges.push_back({c.gt, c.est, c.cost});
+  const std::vector<int> chosen = assignOneToOne(gt_count, est_count, edges);
+  PrimitiveMatching matching;
+  matching.gt_of_est.assign(est_count, -1);
+  PrimitiveTally& tally = matching.tally;
+  tally.gt = gt_count;
+  tally.est = est_count;
+  std::vector<bool> found(gt_count, false);
+  for (std::size_t g = 0; g < gt_count; ++g) {
+    if (chosen[g] < 0) continue;
+    const PrimitiveCandidate& c = candidates[static_cast<std::size_t>(chosen[g])];
+    found[g] = true;
+    matching.gt_of_est[c.est] = static_cast<int>(g);
+    tally.angles.push_back(c.angle);
+    tally.distances.push_back(c.distance);
+  }
+  tally.est_correct = tally.angles.size();
+  for (const PrimitiveCandidate& c : candidates) {
+    const int other = matching.gt_of_est[c.est];
+    if (chosen[c.gt] >= 0 || other < 0) continue;
+    if (same_in_truth(c.gt, static_cast<std::size_t>(other))) found[c.gt] = true;
+  }
+  for (const bool is_found : found) tally.gt_found += is_found;
+  return matching;
+}
+
+}  // namespace opp::mapping
