@@ -5,6 +5,7 @@
 #include "opp/geometry/constants.h"
 
 #include "support/random.h"
+#include "support/refined_scene.h"
 #include "support/rough_graph.h"
 #include "support/synthetic_room.h"
 
@@ -19,14 +20,6 @@ namespace {
 using test::Rectangles;
 using test::SyntheticOptions;
 using test::SyntheticScene;
-
-/// Independent noise, no distortion: what the scenes of these tests have.
-RefinementParams idealSensor() {
-  RefinementParams params;
-  params.noise_correlation = 0.0;
-  params.systematic_angle = 0.0;
-  return params;
-}
 
 /// Order of its planes: −x, +x, −y, +y, −z, +z.
 Rectangles room() { return test::roomSides({-2.0, -1.5, -1.2}, {2.5, 1.8, 1.3}); }
@@ -68,7 +61,7 @@ TEST(RefinePlanes, FindsTheExactRoomFromPlanesOffByDegreesAndCentimetres) {
   test::Random random(1);
   const SyntheticScene scene = sampled(room(), 0.0, random);
   const Primitives result = refinePlanes(
-      scene.cloud, test::roughGraph(scene, degToRad(4.0), 0.03, random), idealSensor());
+      scene.cloud, test::roughGraph(scene, degToRad(4.0), 0.03, random), test::undistortedSensor());
   EXPECT_TRUE(result.converged);
   ASSERT_EQ(result.planes.size(), 6U);
   EXPECT_EQ(result.edges.size(), 12U);
@@ -96,8 +89,9 @@ TEST(RefinePlanes, LabelsEverySampleOfNoisyRandomRooms) {
     const SyntheticScene scene =
         sampled(test::roomSides(low, low + size), random.uniform(0.0, 0.01), random,
                 random.uniform(0.05, 0.15));
-    const Primitives result = refinePlanes(
-        scene.cloud, test::roughGraph(scene, degToRad(3.0), 0.03, random), idealSensor());
+    const Primitives result =
+        refinePlanes(scene.cloud, test::roughGraph(scene, degToRad(3.0), 0.03, random),
+                     test::undistortedSensor());
     ASSERT_EQ(result.planes.size(), 6U) << k;
     EXPECT_TRUE(result.converged) << k;
     EXPECT_EQ(result.families.size(), 3U) << k;
@@ -125,8 +119,8 @@ TEST(RefinePlanes, CovarianceOfConstrainedPlanesPredictsTheirErrors) {
   const int scans = 300;
   for (int k = 0; k < scans; ++k) {
     const SyntheticScene scene = sampled(room(), 0.005, random, 0.2);
-    const Primitives result =
-        refinePlanes(scene.cloud, test::roughGraph(scene, 0.02, 0.02, random), idealSensor());
+    const Primitives result = refinePlanes(scene.cloud, test::roughGraph(scene, 0.02, 0.02, random),
+                                           test::undistortedSensor());
     ASSERT_EQ(result.planes.size(), 6U);
     const std::size_t i = static_cast<std::size_t>(k) % 6;
     normalized += normalizedError(result.planes[i], scene.planes[i]);
@@ -165,7 +159,7 @@ TEST(RefinePlanes, NearlyParallelWallsStayApartIfTheDataSaySo) {
   const SyntheticScene scene = sampled(rectangles, 0.003, random);
   PlaneGraph rough = test::roughGraph(scene, 0.02, 0.02, random);
   rough.edges.push_back({{1, 2}, 1.0});
-  const Primitives honest = refinePlanes(scene.cloud, rough, idealSensor());
+  const Primitives honest = refinePlanes(scene.cloud, rough, test::undistortedSensor());
   ASSERT_EQ(honest.planes.size(), 6U);
   EXPECT_NE(honest.planes[0].family, honest.planes[1].family);
   EXPECT_NEAR(angleOf(honest, 0, 1), kPi - degToRad(0.3), degToRad(0.03));
@@ -179,7 +173,7 @@ TEST(RefinePlanes, MergesTwoPlanesOfOneSurfaceAndTheirEdges) {
   PlaneGraph rough = test::roughGraph(scene, 0.03, 0.02, random);
   rough.nodes.push_back(test::roughGraph(scene, 0.03, 0.02, random).nodes[0]);
   rough.edges.push_back({{2, 6}, 5.0});
-  const Primitives result = refinePlanes(scene.cloud, rough, idealSensor());
+  const Primitives result = refinePlanes(scene.cloud, rough, test::undistortedSensor());
   ASSERT_EQ(result.planes.size(), 6U);
   ASSERT_EQ(result.edges.size(), 12U);
   EXPECT_EQ(result.edges[0].planes, (std::array<int, 2>{0, 2}));
@@ -193,8 +187,8 @@ TEST(RefinePlanes, KeepsParallelSurfacesThatNoiseCanTellApart) {
   rectangles.push_back({{-1.985, 0.1, 0.2}, {0.0, 0.5, 0.0}, {0.0, 0.0, 0.5}});
   const SyntheticScene scene = sampled(rectangles, 0.002, random);
   ASSERT_EQ(scene.planes.size(), 7U);
-  const Primitives result =
-      refinePlanes(scene.cloud, test::roughGraph(scene, 0.002, 0.002, random), idealSensor());
+  const Primitives result = refinePlanes(scene.cloud, test::roughGraph(scene, 0.002, 0.002, random),
+                                         test::undistortedSensor());
   ASSERT_EQ(result.planes.size(), 7U);
   EXPECT_EQ(result.planes[0].family, result.planes[6].family);
   EXPECT_NEAR(std::abs(result.planes[6].plane.d() - result.planes[0].plane.d()), 0.015, 0.001);
@@ -211,7 +205,7 @@ TEST(RefinePlanes, DropsPlanesWithoutSamplesAndRenumbersEdges) {
     edge.planes = {edge.planes[0] + 1, edge.planes[1] + 1};
   }
   rough.edges.insert(rough.edges.begin(), {{0, 1}, 3.0});
-  const Primitives result = refinePlanes(scene.cloud, rough, idealSensor());
+  const Primitives result = refinePlanes(scene.cloud, rough, test::undistortedSensor());
   ASSERT_EQ(result.planes.size(), 6U);
   EXPECT_EQ(result.edges.size(), 12U);
   EXPECT_LT(angleBetween(result.planes[0].plane, scene.planes[0]), 1e-6);
@@ -224,8 +218,8 @@ TEST(RefinePlanes, OutliersDoNotMovePlanes) {
   options.outlier_ratio = 0.5;
   const SyntheticScene scene =
       test::sampleScene(room(), Eigen::Vector3d::Zero(), Eigen::Isometry3d::Identity(), options);
-  const Primitives result =
-      refinePlanes(scene.cloud, test::roughGraph(scene, 0.03, 0.03, random), idealSensor());
+  const Primitives result = refinePlanes(scene.cloud, test::roughGraph(scene, 0.03, 0.03, random),
+                                         test::undistortedSensor());
   ASSERT_EQ(result.planes.size(), 6U);
   for (std::size_t k = 0; k < 6; ++k) {
     // σ/√N over some 3,000 samples is 0.05 mm.

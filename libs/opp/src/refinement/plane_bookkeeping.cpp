@@ -57,22 +57,25 @@ std::vector<int> survivors(std::vector<PlaneFit>& fits, const RefinementParams& 
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::stable_sort(order.begin(), order.end(),
                    [&](std::size_t a, std::size_t b) { return fits[a].support > fits[b].support; });
-  std::vector<std::size_t> kept;
+  std::vector<std::size_t> kept, first(count);  // first: least index of those merged into a plane
   std::vector<int> target(count, -1);
   for (const std::size_t k : order) {
     if (fits[k].support < params.min_support) continue;
     const auto same = std::find_if(kept.begin(), kept.end(), [&](std::size_t other) {
       return sameSurface(fits[other], fits[k], params);
     });
-    if (same == kept.end()) {
+    const std::size_t whole = same == kept.end() ? k : *same;
+    if (whole == k) {
       kept.push_back(k);
-      target[k] = static_cast<int>(k);
+      first[k] = k;
     } else {
-      absorb(fits[k], fits[*same]);
-      target[k] = static_cast<int>(*same);
+      absorb(fits[k], fits[whole]);
+      first[whole] = std::min(first[whole], k);
     }
+    target[k] = static_cast<int>(whole);
   }
-  std::sort(kept.begin(), kept.end());
+  std::sort(kept.begin(), kept.end(),
+            [&](std::size_t a, std::size_t b) { return first[a] < first[b]; });
   std::vector<int> rank(count, -1);
   for (std::size_t r = 0; r < kept.size(); ++r) rank[kept[r]] = static_cast<int>(r);
   for (int& index : target) {
@@ -83,8 +86,7 @@ std::vector<int> survivors(std::vector<PlaneFit>& fits, const RefinementParams& 
 
 void compact(const std::vector<int>& new_index, std::vector<PlaneFit>& fits,
              std::vector<OrthogonalityEdge>& edges) {
-  // Planes keep their order; the first old plane of each new index need not be the one that
-  // survived, so the one with most support is taken: it holds the merged sums.
+  // Of the planes that share an index, the one with most support holds the merged sums.
   std::vector<PlaneFit> kept;
   for (std::size_t k = 0; k < fits.size(); ++k) {
     if (new_index[k] < 0) continue;
