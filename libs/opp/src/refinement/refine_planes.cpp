@@ -127,8 +127,7 @@ class Refiner {
   /// Sets the plane to ±normal through its samples' mean; true if it hardly moved.
   bool move(PlaneFit& fit, const Eigen::Vector3d& normal) const {
     const double slack = fit.slack;
-    const double excess = fit.meanSquare(params_.outlier_cutoff) - fit.meanVariance();
-    if (fit.support > 0) fit.slack = std::min(slack, std::sqrt(std::max(0.0, excess)));
+    if (fit.support > 0) fit.slack = std::min(slack, fit.excess(params_.outlier_cutoff));
     const Plane old = fit.plane;
     const Eigen::Vector3d n = normal.dot(old.normal()) < 0.0 ? Eigen::Vector3d(-normal) : normal;
     const Eigen::Vector3d anchor =

@@ -9,6 +9,9 @@
 namespace opp {
 namespace {
 
+/// Misfit of a plane counts if noise alone would not produce it in 19 of 20 planes.
+constexpr double kChanceSigmas = 2.0;
+
 /// Worth of the mean of n equally correlated measurements, in independent ones.
 double effectiveCount(double n, double correlation) { return n / (1.0 + (n - 1.0) * correlation); }
 
@@ -45,13 +48,17 @@ Match nearestWithNormal(const std::vector<ParallelGroup>& groups, const Eigen::V
 
 }  // namespace
 
-double PlaneFit::meanSquare(double outlier_cutoff) const {
+double PlaneFit::excess(double outlier_cutoff) const {
   if (!(robust_weight > 0.0)) return 0.0;
   // E[ω r²] / E[ω] of a standard normal r under ω = (1 − r²/c²)².
   const double inverse = 1.0 / (outlier_cutoff * outlier_cutoff);
   const double expected = (1.0 - 6.0 * inverse + 15.0 * inverse * inverse) /
                           (1.0 - 2.0 * inverse + 3.0 * inverse * inverse);
-  return square_sum / robust_weight / expected;
+  const double mean_square = square_sum / robust_weight / expected;
+  // Mean squares of N Gaussian residuals scatter by √(2/N).
+  const double chance = kChanceSigmas * std::sqrt(2.0 / support) * meanVariance();
+  const double beyond = mean_square - meanVariance();
+  return beyond > chance ? std::sqrt(beyond) : 0.0;
 }
 
 void PlaneFit::clearSums() {

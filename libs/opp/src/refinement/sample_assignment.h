@@ -25,8 +25,8 @@ struct PlaneFit {
 
   /// Mean variance of a raw point on the plane [m²].
   double meanVariance() const { return robust_weight > 0.0 ? variance_sum / robust_weight : 0.0; }
-  /// Robust mean square of the residuals, made unbiased for Gaussian noise [m²].
-  double meanSquare(double outlier_cutoff) const;
+  /// Standard deviation of the residuals beyond the sensor's noise [m]; 0 if it could be chance.
+  double excess(double outlier_cutoff) const;
   void clearSums();
 };
 
