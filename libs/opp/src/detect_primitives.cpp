@@ -4,6 +4,8 @@
 
 #include "opp/detection/detect_opps.h"
 #include "opp/graph/build_plane_graph.h"
+#include "opp/primitives/find_corners.h"
+#include "opp/primitives/find_lines.h"
 #include "opp/refinement/refine_planes.h"
 
 #include <chrono>
@@ -37,6 +39,10 @@ Primitives detectPrimitives(const OrientedCloud& cloud, const PrimitiveParams& p
   laps.clustering = stopwatch.lap();
   Primitives primitives = refinePlanes(cloud, graph, params.refinement);
   laps.refinement = stopwatch.lap();
+  primitives.corners = findCorners(cloud, primitives, params.corners);
+  laps.corners = stopwatch.lap();
+  primitives.lines = findLines(cloud, primitives, params.lines);
+  laps.lines = stopwatch.lap();
   if (timings != nullptr) *timings = laps;
   return primitives;
 }

@@ -9,11 +9,11 @@
 
 namespace opp {
 
-/// Planes and their orthogonality in one scan (Sommer et al. 2020, III and IV): votes for
-/// orthogonal plane pairs, their graph, and its joint refinement. Everything is in the cloud's
-/// frame. Empty for clouds of fewer than three samples. Same result for every `threads` (≤ 0: all
-/// cores). Fills `timings` unless null.
-/// \throws std::invalid_argument if a parameter is out of range.
+/// Planes, their orthogonality, lines and corners in one scan (Sommer et al. 2020, III and IV):
+/// votes for orthogonal plane pairs, their graph, its joint refinement, corners at the graph's
+/// triangles and lines along its edges. Everything is in the cloud's frame. Empty for clouds of
+/// fewer than three samples. Same result for every `threads` (≤ 0: all cores). Fills `timings`
+/// unless null. \throws std::invalid_argument if a parameter is out of range.
 Primitives detectPrimitives(const OrientedCloud& cloud, const PrimitiveParams& params,
                             int threads = 1, StageTimings* timings = nullptr);
 

@@ -5,6 +5,8 @@
 #include "opp/cloud/sensor_model.h"
 #include "opp/detection/voting_params.h"
 #include "opp/graph/graph_params.h"
+#include "opp/primitives/corner_params.h"
+#include "opp/primitives/line_params.h"
 #include "opp/refinement/refinement_params.h"
 
 namespace opp {
@@ -15,6 +17,8 @@ struct PrimitiveParams {
   VotingParams voting;
   GraphParams graph;
   RefinementParams refinement;
+  CornerParams corners;
+  LineParams lines;
 
   /// Calls f(section) for each stage, in the order of the stages.
   template <typename Self, typename F>
@@ -23,6 +27,8 @@ struct PrimitiveParams {
     f(p.voting);
     f(p.graph);
     f(p.refinement);
+    f(p.corners);
+    f(p.lines);
   }
 };
 

@@ -9,6 +9,8 @@ struct StageTimings {
   double voting = 0.0;
   double clustering = 0.0;
   double refinement = 0.0;
+  double corners = 0.0;
+  double lines = 0.0;
 };
 
 }  // namespace opp

@@ -33,7 +33,7 @@ struct RefinementParams {
 
   template <typename Self, typename F>
   static void visit(Self&& p, F&& f) {
-    f(p.normal_gate, Field{"normal_gate", "rad", 0.01, kPi / 4.0,
+    f(p.normal_gate, Field{"normal_gate", "rad", 0.01, degToRad(45.0),
                            "a sample belongs to a plane only if their normals differ by less"});
     f(p.outlier_cutoff, Field{"outlier_cutoff", "", 2.0, 20.0,
                               "samples farther from a plane than this many sigmas are outliers"});
