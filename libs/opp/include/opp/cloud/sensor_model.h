@@ -32,6 +32,13 @@ struct SensorModel {
     return sigma * std::sqrt((1.0 + (count - 1.0) * noise_correlation) / count);
   }
 
+  /// Standard deviation along a surface's normal of a point measured on it [m]: the part that grows
+  /// with range lies along the ray and counts with the cosine of the incidence angle; the constant
+  /// part counts in every direction.
+  double sigmaAlongNormal(double range, double cos_incidence) const {
+    return std::hypot(noise_constant, noise_quadratic * range * range * cos_incidence);
+  }
+
   template <typename Self, typename F>
   static void visit(Self&& p, F&& f) {
     f(p.noise_constant,

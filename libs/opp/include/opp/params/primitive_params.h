@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "opp/cloud/sampling_params.h"
 #include "opp/cloud/sensor_model.h"
 #include "opp/detection/voting_params.h"
 #include "opp/graph/graph_params.h"
@@ -14,6 +15,7 @@ namespace opp {
 /// Parameters of all stages from raw points to primitives.
 struct PrimitiveParams {
   SensorModel sensor;
+  SamplingParams sampling;
   VotingParams voting;
   GraphParams graph;
   RefinementParams refinement;
@@ -24,6 +26,7 @@ struct PrimitiveParams {
   template <typename Self, typename F>
   static void visitSections(Self&& p, F&& f) {
     f(p.sensor);
+    f(p.sampling);
     f(p.voting);
     f(p.graph);
     f(p.refinement);

@@ -1,0 +1,139 @@
+// SPDX-FileCopyrightText: 2026 The opp-mapping authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "cloud/grid_patches.h"
+
+#include <Eigen/Geometry>
+
+#include <algorithm>
+#include <cmath>
+
+namespace opp {
+namespace {
+
+struct RangeGate {
+  Eigen::Vector3f viewpoint;
+  float min_squared;
+  float max_squared;
+
+  RangeGate(const PointCloud& cloud, const SensorModel& sensor)
+      : viewpoint(cloud.viewpoint),
+        min_squared(static_cast<float>(sensor.min_range * sensor.min_range)),
+        max_squared(static_cast<float>(sensor.max_range * sensor.max_range)) {}
+
+  /// False for points that are not finite: they compare false.
+  bool contains(const Eigen::Vector3f& point) const {
+    const float squared = (point - viewpoint).squaredNorm();
+    return squared >= min_squared && squared <= max_squared;
+  }
+};
+
+/// Median angle between the rays of grid neighbours (`row_step`, `col_step` apart); 0 if there are
+/// none. A sample of the grid is enough.
+double neighborAngle(const PointCloud& cloud, const RangeGate& gate, int row_step, int col_step) {
+  constexpr int kSamples = 500;
+  const int rows = cloud.rows - row_step;
+  const int cols = cloud.cols - col_step;
+  if (rows < 1 || cols < 1) return 0.0;
+  const long long total = static_cast<long long>(rows) * cols;
+  const long long stride = std::max(1LL, total / kSamples);
+  std::vector<double> angles;
+  for (long long k = 0; k < total; k += stride) {
+    const auto at = static_cast<std::size_t>(k / cols * cloud.cols + k % cols);
+    const std::size_t beside =
+        at + static_cast<std::size_t>(row_step) * static_cast<std::size_t>(cloud.cols) +
+        static_cast<std::size_t>(col_step);
+    if (!gate.contains(cloud.points[at]) || !gate.contains(cloud.points[beside])) continue;
+    const Eigen::Vector3d a = (cloud.points[at] - gate.viewpoint).cast<double>();
+    const Eigen::Vector3d b = (cloud.points[beside] - gate.viewpoint).cast<double>();
+    angles.push_back(std::atan2(a.cross(b).norm(), a.dot(b)));
+  }
+  if (angles.empty()) return 0.0;
+  const auto middle = angles.begin() + static_cast<std::ptrdiff_t>(angles.size() / 2);
+  std::nth_element(angles.begin(), middle, angles.end());
+  return *middle;
+}
+
+struct BlockShape {
+  int rows = 1;
+  int cols = 1;
+};
+
+BlockShape blockShape(const PointCloud& cloud, const RangeGate& gate, std::size_t target) {
+  const double pixels =
+      std::max(1.0, static_cast<double>(cloud.size()) / static_cast<double>(target));
+  const double row_angle = neighborAngle(cloud, gate, 1, 0);
+  const double col_angle = neighborAngle(cloud, gate, 0, 1);
+  const double ratio = row_angle > 0.0 && col_angle > 0.0 ? row_angle / col_angle : 1.0;
+  const double rows =
+      std::clamp(std::round(std::sqrt(pixels / ratio)), 1.0, static_cast<double>(cloud.rows));
+  const double cols = std::clamp(std::round(pixels / rows), 1.0, static_cast<double>(cloud.cols));
+  return {static_cast<int>(rows), static_cast<int>(cols)};
+}
+
+/// Moments of one block about `origin`. Summed in single precision about the block's first point:
+/// neighbours differ from it by little, and exactly.
+MomentSums blockSums(const PointCloud& cloud, const RangeGate& gate, const Eigen::Vector3d& origin,
+                     int row_begin, int row_end, int col_begin, int col_end) {
+  Eigen::Vector3f first = Eigen::Vector3f::Zero();
+  float n = 0, x = 0, y = 0, z = 0, xx = 0, xy = 0, xz = 0, yy = 0, yz = 0, zz = 0;
+  for (int row = row_begin; row < row_end; ++row) {
+    const Eigen::Vector3f* line =
+        cloud.points.data() + static_cast<std::ptrdiff_t>(row) * cloud.cols;
+    for (int col = col_begin; col < col_end; ++col) {
+      const Eigen::Vector3f& point = line[col];
+      if (!gate.contains(point)) continue;
+      if (n == 0.0F) first = point;
+      const Eigen::Vector3f d = point - first;
+      n += 1.0F, x += d.x(), y += d.y(), z += d.z();
+      xx += d.x() * d.x(), xy += d.x() * d.y(), xz += d.x() * d.z();
+      yy += d.y() * d.y(), yz += d.y() * d.z(), zz += d.z() * d.z();
+    }
+  }
+  const Eigen::Array<float, 10, 1> local =
+      (Eigen::Array<float, 10, 1>() << n, x, y, z, xx, xy, xz, yy, yz, zz).finished();
+  return shifted(local.cast<double>(), first.cast<double>() - origin);
+}
+
+}  // namespace
+
+void GridPatches::window(int patch, int radius, std::vector<int>& members) const {
+  members.clear();
+  const int block = block_of_patch[static_cast<std::size_t>(patch)];
+  const int row = block / cols;
+  const int col = block % cols;
+  // A window as wide as the whole turn must not meet itself.
+  const int reach = columns_wrap ? std::min(radius, (cols - 1) / 2) : radius;
+  for (int r = std::max(0, row - radius); r <= std::min(rows - 1, row + radius); ++r) {
+    for (int c = col - reach; c <= col + reach; ++c) {
+      if (!columns_wrap && (c < 0 || c >= cols)) continue;
+      const int neighbor = patch_of_block[static_cast<std::size_t>(r * cols + (c + cols) % cols)];
+      if (neighbor >= 0) members.push_back(neighbor);
+    }
+  }
+}
+
+GridPatches makeGridPatches(const PointCloud& cloud, const SensorModel& sensor,
+                            std::size_t target) {
+  const RangeGate gate(cloud, sensor);
+  const BlockShape shape = blockShape(cloud, gate, target);
+  GridPatches grid;
+  grid.rows = (cloud.rows + shape.rows - 1) / shape.rows;
+  grid.cols = (cloud.cols + shape.cols - 1) / shape.cols;
+  grid.columns_wrap = cloud.columns_wrap;
+  grid.patches.origin = cloud.viewpoint.cast<double>();
+  for (int r = 0; r < grid.rows; ++r) {
+    for (int c = 0; c < grid.cols; ++c) {
+      const MomentSums sums = blockSums(cloud, gate, grid.patches.origin, r * shape.rows,
+                                        std::min(cloud.rows, (r + 1) * shape.rows), c * shape.cols,
+                                        std::min(cloud.cols, (c + 1) * shape.cols));
+      const bool empty = sums[0] == 0.0;
+      grid.patch_of_block.push_back(empty ? -1 : static_cast<int>(grid.patches.size()));
+      if (empty) continue;
+      grid.block_of_patch.push_back(r * grid.cols + c);
+      grid.patches.add(sums);
+    }
+  }
+  return grid;
+}
+
+}  // namespace opp

@@ -1,0 +1,129 @@
+// SPDX-FileCopyrightText: 2026 The opp-mapping authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "opp/cloud/oriented_cloud.h"
+
+#include "opp/cloud/even_sampling.h"
+
+#include "cloud/grid_patches.h"
+#include "cloud/patch_normals.h"
+#include "cloud/voxel_patches.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+namespace opp {
+namespace {
+
+void check(const PointCloud& cloud) {
+  if (cloud.hasNormals() && cloud.normals.size() != cloud.size()) {
+    throw std::invalid_argument("a cloud needs one normal per point or none");
+  }
+  if (cloud.organized() &&
+      static_cast<std::size_t>(cloud.rows) * static_cast<std::size_t>(cloud.cols) != cloud.size()) {
+    throw std::invalid_argument("an organized cloud needs rows x cols points");
+  }
+  if (!cloud.viewpoint.allFinite()) {
+    throw std::invalid_argument("the viewpoint of a cloud must be finite");
+  }
+}
+
+bool inRange(const Eigen::Vector3f& point, const PointCloud& cloud, const SensorModel& sensor) {
+  const double range = (point - cloud.viewpoint).cast<double>().norm();
+  return range >= sensor.min_range && range <= sensor.max_range;
+}
+
+void append(OrientedCloud& cloud, const Eigen::Vector3f& point, const Eigen::Vector3f& normal,
+            double sigma, double weight) {
+  cloud.points.push_back(point);
+  cloud.normals.push_back(normal);
+  cloud.sigmas.push_back(static_cast<float>(sigma));
+  cloud.weights.push_back(static_cast<float>(weight));
+}
+
+/// The points with a usable normal, turned to the viewpoint.
+OrientedCloud fromGivenNormals(const PointCloud& cloud, const SensorModel& sensor) {
+  OrientedCloud dense;
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    const Eigen::Vector3d normal = cloud.normals[i].cast<double>();
+    const double length = normal.norm();
+    if (!inRange(cloud.points[i], cloud, sensor) || !(length > 0.0) || !std::isfinite(length))
+      continue;
+    const Eigen::Vector3d to_viewpoint = (cloud.viewpoint - cloud.points[i]).cast<double>();
+    const double range = to_viewpoint.norm();
+    const double toward = normal.dot(to_viewpoint) / length;
+    const double cos_incidence = range > 0.0 ? std::abs(toward) / range : 1.0;
+    append(dense, cloud.points[i], (normal * ((toward < 0.0 ? -1.0 : 1.0) / length)).cast<float>(),
+           sensor.sigmaAlongNormal(range, cos_incidence), 1.0);
+  }
+  return dense;
+}
+
+OrientedCloud fromPatches(const Patches& patches, const Neighborhood& neighborhood,
+                          const PointCloud& cloud, const SensorModel& sensor,
+                          const SamplingParams& params) {
+  PatchNormals estimator(patches, neighborhood, cloud.viewpoint.cast<double>(), sensor, params);
+  const std::vector<PatchNormal> normals = estimator.estimate();
+  OrientedCloud dense;
+  for (std::size_t i = 0; i < patches.size(); ++i) {
+    if (normals[i].normal.isZero()) continue;
+    append(dense, (patches.origin + patches.means[i]).cast<float>(),
+           normals[i].normal.cast<float>(), normals[i].sigma, patches.sums[i][0]);
+  }
+  return dense;
+}
+
+OrientedCloud fromUnorganized(const PointCloud& cloud, const SensorModel& sensor,
+                              const SamplingParams& params, std::size_t patch_count) {
+  std::vector<Eigen::Vector3f> points;
+  for (const Eigen::Vector3f& p : cloud.points) {
+    if (inRange(p, cloud, sensor)) points.push_back(p);
+  }
+  if (points.empty()) return {};
+  const double edge = spacingForCount(points, patch_count, 0.0);
+  const Patches patches = makeVoxelPatches(points, edge);
+  return fromPatches(patches, nearestPatches(patches), cloud, sensor, params);
+}
+
+OrientedCloud denseSurface(const PointCloud& cloud, const SensorModel& sensor,
+                           const SamplingParams& params) {
+  if (cloud.hasNormals()) return fromGivenNormals(cloud, sensor);
+  const auto patch_count =
+      static_cast<std::size_t>(params.patches_per_sample * params.target_samples);
+  if (!cloud.organized()) return fromUnorganized(cloud, sensor, params, patch_count);
+  const GridPatches grid = makeGridPatches(cloud, sensor, patch_count);
+  const auto window = [&grid](int patch, int radius, std::vector<int>& members) {
+    grid.window(patch, radius, members);
+  };
+  return fromPatches(grid.patches, window, cloud, sensor, params);
+}
+
+/// The middle one of the points' noise levels: most samples need not be closer than it allows.
+double medianSigma(std::vector<float> sigmas) {
+  if (sigmas.empty()) return 0.0;
+  const auto middle = sigmas.begin() + static_cast<std::ptrdiff_t>(sigmas.size() / 2);
+  std::nth_element(sigmas.begin(), middle, sigmas.end());
+  return static_cast<double>(*middle);
+}
+
+}  // namespace
+
+OrientedCloud makeOrientedCloud(const PointCloud& cloud, const SensorModel& sensor,
+                                const SamplingParams& params) {
+  validate(sensor);
+  validate(params);
+  check(cloud);
+  OrientedCloud dense = denseSurface(cloud, sensor, params);
+  dense.viewpoint = cloud.viewpoint;
+  // Samples at least d apart, drawn one by one, end at 0.547·4/π = 0.70 per d² (jamming limit of
+  // discs, Feder 1980); cells of edge h number one per h² of surface.
+  const double distance_per_edge = std::sqrt(0.547 * 4.0 / kPi);
+  const double edge =
+      spacingForCount(dense.points, static_cast<std::size_t>(params.target_samples), 0.0);
+  const double spacing =
+      std::max(distance_per_edge * edge, params.spacing_per_sigma * medianSigma(dense.sigmas));
+  if (!(spacing > 0.0)) return dense;
+  return sampleEvenly(dense, spacing, params);
+}
+
+}  // namespace opp

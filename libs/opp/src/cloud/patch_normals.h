@@ -1,0 +1,74 @@
+// SPDX-FileCopyrightText: 2026 The opp-mapping authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "opp/cloud/sampling_params.h"
+#include "opp/cloud/sensor_model.h"
+
+#include "cloud/patches.h"
+
+#include <vector>
+
+namespace opp {
+
+/// Plane through all points of a window of patches, and how far it can be trusted.
+struct WindowFit {
+  Eigen::Vector3d normal = Eigen::Vector3d::Zero();  ///< to the viewpoint; zero: no plane
+  Eigen::Vector3d mean = Eigen::Vector3d::Zero();    ///< relative to the patches' origin
+  double model_sigma = 0.0;     ///< along the normal, of one raw point, by the sensor model [m]
+  double sigma = 0.0;           ///< the same, as neighbouring patches of this cloud show it [m]
+  double spread_sigma = 0.0;    ///< the same, as points within patches show it [m]
+  double bend = 0.0;            ///< deviation that a tolerated curvature explains (rms) [m]
+  double misfit = 0.0;          ///< of the patches' means, over what noise and bend explain
+  double angle_variance = 0.0;  ///< of the normal, in its worse direction [rad²]
+
+  bool flat() const { return !normal.isZero() && misfit <= 1.0; }
+};
+
+/// Normal of one patch; zero: none that could be trusted.
+struct PatchNormal {
+  Eigen::Vector3d normal = Eigen::Vector3d::Zero();
+  double sigma = 0.0;  ///< along the normal, of one raw point, by the sensor model [m]
+};
+
+/// Normals of patches from windows around them. A window grows until its normal is certain enough;
+/// a patch may take any window that holds it, so that next to an edge the window stays on the
+/// patch's side: the edge-preserving filter of Kuwahara et al. (1976) with a plane in place of the
+/// mean grey value.
+class PatchNormals {
+ public:
+  PatchNormals(const Patches& patches, Neighborhood neighborhood, const Eigen::Vector3d& viewpoint,
+               const SensorModel& sensor, const SamplingParams& params);
+
+  /// One normal per patch. O(patches · window).
+  std::vector<PatchNormal> estimate();
+
+ private:
+  enum class Verdict { kFound, kUncertain, kEdge };
+
+  void measureNoise();
+  const WindowFit& fit(int patch, int radius);
+  WindowFit fitWindow(const std::vector<int>& window) const;
+  /// True if one patch has more than half of the leverage in the window's narrow direction: beside
+  /// a line of points a single other one always makes a perfect plane.
+  bool hangsOnOnePatch(const std::vector<int>& window, const Eigen::Vector3d& mean,
+                       const Eigen::Vector3d& narrow) const;
+  double spreadOf(int patch, const Eigen::Vector3d& normal) const;
+  double betweenPatches(const std::vector<int>& window, const WindowFit& plane) const;
+  bool fits(int patch, const WindowFit& plane) const;
+  Verdict choose(int patch, int radius, PatchNormal& result);
+
+  const Patches& patches_;
+  Neighborhood neighborhood_;
+  Eigen::Vector3d viewpoint_;  ///< relative to the patches' origin
+  SensorModel sensor_;
+  SamplingParams params_;
+  double noise_scale_ = 1.0;     ///< noise seen between patches over the model's
+  double spread_scale_ = 1.0;    ///< noise seen within patches over the model's
+  std::vector<WindowFit> fits_;  ///< of the current radius
+  std::vector<int> fit_radius_;  ///< radius at which fits_[i] was computed; 0: never
+  std::vector<int> window_;      ///< scratch
+  std::vector<int> candidates_;  ///< scratch
+};
+
+}  // namespace opp

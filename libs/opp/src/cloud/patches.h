@@ -1,0 +1,49 @@
+// SPDX-FileCopyrightText: 2026 The opp-mapping authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+
+#include <cstddef>
+#include <functional>
+#include <vector>
+
+namespace opp {
+
+/// Count, first and second moments of some points relative to an origin that all of them share, so
+/// that sets are joined by adding ten numbers: n, Σx, Σy, Σz, Σxx, Σxy, Σxz, Σyy, Σyz, Σzz.
+using MomentSums = Eigen::Array<double, 10, 1>;
+
+/// Moments about another origin: `sums` are relative to a point that lies at `offset` from it.
+inline MomentSums shifted(const MomentSums& sums, const Eigen::Vector3d& offset) {
+  const double n = sums[0];
+  const double x = offset.x(), y = offset.y(), z = offset.z();
+  MomentSums out = sums;
+  out.segment<3>(1) += n * offset.array();
+  out[4] += 2.0 * x * sums[1] + n * x * x;
+  out[5] += x * sums[2] + y * sums[1] + n * x * y;
+  out[6] += x * sums[3] + z * sums[1] + n * x * z;
+  out[7] += 2.0 * y * sums[2] + n * y * y;
+  out[8] += y * sums[3] + z * sums[2] + n * y * z;
+  out[9] += 2.0 * z * sums[3] + n * z * z;
+  return out;
+}
+
+/// Neighbouring raw points taken together: the unit in which normals are estimated.
+struct Patches {
+  Eigen::Vector3d origin = Eigen::Vector3d::Zero();  ///< of all moments, in the cloud's frame [m]
+  std::vector<MomentSums> sums;                      ///< none is empty
+  std::vector<Eigen::Vector3d> means;                ///< relative to the origin
+
+  std::size_t size() const { return sums.size(); }
+  void add(const MomentSums& patch_sums) {
+    sums.push_back(patch_sums);
+    means.emplace_back(patch_sums.segment<3>(1) / patch_sums[0]);
+  }
+};
+
+/// Lists the patches around a patch, itself included, in a window of the given radius (in
+/// patches): replaces the vector's content.
+using Neighborhood = std::function<void(int patch, int radius, std::vector<int>& window)>;
+
+}  // namespace opp
