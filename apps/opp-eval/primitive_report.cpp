@@ -71,7 +71,8 @@ Json toJson(const PrimitiveTally& tally, const std::string& distance_name) {
           {"recall", toJson(tally.recall())},
           {"angle_rad", mapping::toJson(angles)},
           {"angle_deg", mapping::toJson(angles, kDegreesPerRadian)},
-          {distance_name, mapping::toJson(statisticsOf(tally.distances))}};
+          {distance_name, mapping::toJson(statisticsOf(tally.distances))},
+          {"near_" + distance_name, mapping::toJson(statisticsOf(tally.near_distances))}};
 }
 
 std::string asText(const std::optional<double>& value) {
@@ -137,6 +138,7 @@ void print(std::ostream& out, const PrimitiveComparison& comparison) {
   printStatistics(out, "lines, distance [m]", statisticsOf(t.lines.distances));
   printStatistics(out, "corners, angle [deg]", statisticsOf(t.corners.angles), kDegreesPerRadian);
   printStatistics(out, "corners, distance [m]", statisticsOf(t.corners.distances));
+  printStatistics(out, "near corners, distance [m]", statisticsOf(t.corners.near_distances));
   out << "orthogonality: " << t.orthogonality.claimed << " claimed, " << t.orthogonality.checked
       << " of them between true planes, " << t.orthogonality.wrong << " of these false (rate "
       << asText(t.orthogonality.falseRate()) << ")\n";

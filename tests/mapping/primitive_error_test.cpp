@@ -250,6 +250,19 @@ TEST(ComparePrimitives, CornerFramesAreEqualUpToTheir24Descriptions) {
   }
 }
 
+TEST(ComparePrimitives, CornersNearTheSensorAreSummarizedApart) {
+  PlanarMap gt;
+  gt.corners.resize(2);
+  gt.corners[0].position = {2.4, 0, 0};
+  gt.corners[1].position = {2.6, 0, 0};
+  PlanarMap est = gt;
+  est.corners[0].position.y() = 0.01;
+  est.corners[1].position.y() = 0.05;
+  EXPECT_TRUE(comparePrimitives(gt, est).corners.near_distances.empty());  // a map has no sensor
+  gt.frame = "sensor";
+  EXPECT_EQ(comparePrimitives(gt, est).corners.near_distances, std::vector<double>{0.01});
+}
+
 TEST(ComparePrimitives, EdgeBetweenPlanesThatAreNotOrthogonalIsFalse) {
   PlanarMap gt;
   const double tilt = degToRad(4.0);  // a wall at 86°

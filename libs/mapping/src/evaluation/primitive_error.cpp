@@ -35,6 +35,20 @@ std::set<IdPair> claimsOf(const PlanarMap& map) {
   return claims;
 }
 
+/// In a single scan the origin is the sensor, and corners are measured the worse the farther off.
+PrimitiveTally cornerTally(const PlanarMap& gt, const PlanarMap& est,
+                           const PrimitiveErrorParams& params) {
+  PrimitiveMatching matching = matchCorners(gt.corners, est.corners, params);
+  if (gt.frame != "sensor") return matching.tally;
+  for (std::size_t e = 0; e < est.corners.size(); ++e) {
+    if (matching.gt_of_est[e] < 0) continue;
+    const PlanarMapCorner& truth = gt.corners[static_cast<std::size_t>(matching.gt_of_est[e])];
+    if (truth.position.norm() > params.near_range) continue;
+    matching.tally.near_distances.push_back((truth.position - est.corners[e].position).norm());
+  }
+  return matching.tally;
+}
+
 OrthogonalityTally checkOrthogonality(const PlanarMap& gt, const PlanarMap& est,
                                       const std::vector<int>& gt_of_est, double tolerance) {
   std::map<int, const Plane*> truth_of;
@@ -70,7 +84,7 @@ PrimitiveTallies comparePrimitives(const PlanarMap& ground_truth, const PlanarMa
   tallies.maps = 1;
   tallies.planes = planes.tally;
   tallies.lines = matchLines(ground_truth.lines, est.lines, params).tally;
-  tallies.corners = matchCorners(ground_truth.corners, est.corners, params).tally;
+  tallies.corners = cornerTally(ground_truth, est, params);
   tallies.orthogonality =
       checkOrthogonality(ground_truth, est, planes.gt_of_est, params.false_orthogonality);
   return tallies;

@@ -23,6 +23,8 @@ void PrimitiveTally::add(const PrimitiveTally& other) {
   est_correct += other.est_correct;
   angles.insert(angles.end(), other.angles.begin(), other.angles.end());
   distances.insert(distances.end(), other.distances.begin(), other.distances.end());
+  near_distances.insert(near_distances.end(), other.near_distances.begin(),
+                        other.near_distances.end());
 }
 
 std::optional<double> OrthogonalityTally::falseRate() const { return ratio(wrong, checked); }

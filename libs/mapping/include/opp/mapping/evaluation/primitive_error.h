@@ -23,6 +23,7 @@ struct PrimitiveErrorParams {
   double min_overlap = 0.5;
   double min_coverage = 0.25;
   double false_orthogonality = degToRad(2.0);
+  double near_range = 2.5;
 
   template <typename Self, typename F>
   static void visit(Self&& p, F&& f) {
@@ -40,6 +41,8 @@ struct PrimitiveErrorParams {
     f(p.false_orthogonality,
       Field{"false_orthogonality", "rad", 0.0, degToRad(45.0),
             "true angles farther from 90 degrees make a claimed edge false"});
+    f(p.near_range, Field{"near_range", "m", 0.0, 1000.0,
+                          "in single scans, corners within this are summarized apart, too"});
   }
 };
 

@@ -19,6 +19,7 @@ struct PrimitiveTally {
   std::vector<double> angles;   ///< of each matched pair [rad]
   /// Of each matched pair [m]: planes: offset at the true centroid; lines and corners: distance.
   std::vector<double> distances;
+  std::vector<double> near_distances;  ///< those of corners near the sensor; see near_range
 
   /// est_correct / est; nothing if nothing was estimated.
   std::optional<double> precision() const;
