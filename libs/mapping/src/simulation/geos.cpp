@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 namespace opp::mapping {
+inline namespace simulation_geometry {
 namespace {
 
 void keepMessage(const char* message, void* target) {
@@ -91,4 +92,5 @@ Ring2d Geos::vertices(const GEOSGeometry* ring, bool counter_clockwise) const {
   return result;
 }
 
+}  // namespace simulation_geometry
 }  // namespace opp::mapping

@@ -11,6 +11,8 @@
 #include <vector>
 
 namespace opp::mapping {
+/// Apart from the class of the same name that the planar map uses.
+inline namespace simulation_geometry {
 
 using Ring2d = std::vector<Eigen::Vector2d>;  ///< does not repeat its first vertex
 
@@ -47,4 +49,5 @@ class Geos {
   mutable std::string message_;
 };
 
+}  // namespace simulation_geometry
 }  // namespace opp::mapping
