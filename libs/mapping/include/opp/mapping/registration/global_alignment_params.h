@@ -1,0 +1,68 @@
+// SPDX-FileCopyrightText: 2026 The opp-mapping authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "opp/geometry/constants.h"
+#include "opp/params/field.h"
+
+#include <string_view>
+
+namespace opp::mapping {
+
+/// Parameters of the alignment of two scans without initial guess (DESIGN 3, rung 1).
+struct GlobalAlignmentParams {
+  static constexpr std::string_view kSection = "global_alignment";
+  int samples = 600;
+  int screening_samples = 120;
+  int max_directions = 12;
+  int max_rotations = 48;
+  int max_translations = 150;
+  int max_verified = 64;
+  int max_refined = 12;
+  double direction_tolerance = degToRad(8.0);
+  double normal_gate = degToRad(35.0);
+  double cell_ratio = 3.0;
+  double agreement_sigmas = 4.0;
+  double distinct_rotation = degToRad(8.0);
+  double distinct_translation = 0.25;
+  double min_overlap = 0.25;
+  double max_conflict = 0.12;
+  double min_advantage = 0.3;
+  double min_evidence = 0.03;
+
+  template <typename Self, typename F>
+  static void visit(Self&& p, F&& f) {
+    f(p.samples, Field{"samples", "", 20, 1e5, "samples of each scan that verify a pose"});
+    f(p.screening_samples,
+      Field{"screening_samples", "", 10, 1e5, "samples that sort out the worst poses first"});
+    f(p.max_directions,
+      Field{"max_directions", "", 2, 1000, "directions of planes used, those of most area"});
+    f(p.max_rotations, Field{"max_rotations", "", 1, 1e4, "candidate rotations at most"});
+    f(p.max_translations,
+      Field{"max_translations", "", 1, 1e5, "candidate translations of a rotation at most"});
+    f(p.max_verified, Field{"max_verified", "", 1, 1e5, "screened poses that are verified"});
+    f(p.max_refined, Field{"max_refined", "", 2, 1000, "verified poses that are refined"});
+    f(p.direction_tolerance, Field{"direction_tolerance", "rad", 0.001, 0.5,
+                                   "planes are parallel if their normals differ less"});
+    f(p.normal_gate,
+      Field{"normal_gate", "rad", 0.01, 1.57, "two samples agree if their normals differ less"});
+    f(p.cell_ratio,
+      Field{"cell_ratio", "", 1.0, 20.0, "edge of a search cell over the sample spacing"});
+    f(p.agreement_sigmas, Field{"agreement_sigmas", "", 1.0, 20.0,
+                                "two samples agree if they are so many sigmas apart or less"});
+    f(p.distinct_rotation, Field{"distinct_rotation", "rad", 0.01, 1.57,
+                                 "poses that differ less, and less than the next, are one"});
+    f(p.distinct_translation, Field{"distinct_translation", "m", 0.01, 10.0, "see above"});
+    f(p.min_overlap,
+      Field{"min_overlap", "", 0.0, 1.0, "share of the smaller scan that has to agree"});
+    f(p.max_conflict, Field{"max_conflict", "", 0.0, 1.0,
+                            "share of conflicts with free space among all that speaks"});
+    f(p.min_advantage, Field{"min_advantage", "", 0.0, 1.0,
+                             "of the samples that tell two poses apart, so many more (share) must "
+                             "speak for the better one"});
+    f(p.min_evidence, Field{"min_evidence", "", 0.0, 1.0,
+                            "and so many more of all samples, else the answer is: ambiguous"});
+  }
+};
+
+}  // namespace opp::mapping

@@ -1,0 +1,115 @@
+// SPDX-FileCopyrightText: 2026 The opp-mapping authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "registration/verify_pose.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+
+namespace opp::mapping {
+namespace {
+
+/// A surface in front of another one is in conflict with it only if it is nearer by more spacings
+/// than the depth map's blur.
+constexpr float kBlurSpacings = 2.0F;
+/// And by more than this share of the range: a bin of the depth map is about 0.03 rad wide, and
+/// surfaces may be seen at a grazing angle.
+constexpr float kBlurRatio = 0.05F;
+
+/// Agreement of `moving` with `fixed`; appends what each sample says to `votes`.
+Agreement compare(const ScanModel& fixed, const ScanModel& moving,
+                  const Eigen::Isometry3f& fixed_from_moving, float slack,
+                  const GlobalAlignmentParams& params, std::vector<std::int8_t>& votes) {
+  const auto min_cosine = static_cast<float>(std::cos(params.normal_gate));
+  const auto sigmas = static_cast<float>(params.agreement_sigmas);
+  const float blur = kBlurSpacings * static_cast<float>(fixed.cloud().spacing) + slack;
+  Agreement result;
+  for (const std::uint32_t i : moving.samples) {
+    ++result.samples;
+    votes.push_back(0);
+    const Eigen::Vector3f point = fixed_from_moving * moving.cloud().points[i];
+    const Eigen::Vector3f normal = fixed_from_moving.linear() * moving.cloud().normals[i];
+    const std::int32_t nearest = fixed.voxels.near(point, normal, min_cosine);
+    if (nearest >= 0) {
+      const auto k = static_cast<std::size_t>(nearest);
+      const float distance = fixed.cloud().normals[k].dot(point - fixed.cloud().points[k]);
+      const float noise = std::hypot(fixed.cloud().sigmas[k], moving.cloud().sigmas[i]);
+      if (std::abs(distance) <= sigmas * noise + slack) {
+        ++result.agreeing;
+        votes.back() = 1;
+        result.squared_distance += static_cast<double>(distance * distance);
+        continue;
+      }
+    }
+    const float range = (point - fixed.cloud().viewpoint).norm();
+    const float free_range = fixed.depth.range(point);
+    const float margin = blur + kBlurRatio * free_range + sigmas * moving.cloud().sigmas[i];
+    if (range >= free_range - margin) continue;
+    ++result.conflicting;
+    votes.back() = -1;
+  }
+  return result;
+}
+
+double margin(const Agreement& a) {
+  return a.samples == 0 ? 0.0 : static_cast<double>(a.agreeing - a.conflicting) / a.samples;
+}
+
+}  // namespace
+
+double Verification::score() const { return 0.5 * (margin(of_source) + margin(of_target)); }
+
+double Verification::overlap() const { return std::max(of_source.overlap(), of_target.overlap()); }
+
+double Verification::conflict() const {
+  const int conflicts = of_source.conflicting + of_target.conflicting;
+  const int both = conflicts + of_source.agreeing + of_target.agreeing;
+  return both == 0 ? 0.0 : static_cast<double>(conflicts) / both;
+}
+
+double Verification::rms() const {
+  const int agreeing = of_source.agreeing + of_target.agreeing;
+  if (agreeing == 0) return 0.0;
+  return std::sqrt((of_source.squared_distance + of_target.squared_distance) / agreeing);
+}
+
+bool clearlyBetter(const Verification& a, const Verification& b,
+                   const GlobalAlignmentParams& params) {
+  int advantage = 0, telling = 0;
+  for (std::size_t i = 0; i < a.votes.size(); ++i) {
+    const int difference = a.votes[i] - b.votes[i];
+    advantage += difference;
+    telling += std::abs(difference);
+  }
+  return advantage > params.min_advantage * telling &&
+         advantage > params.min_evidence * static_cast<double>(a.votes.size());
+}
+
+int screenPose(const ScanModel& target, const ScanModel& source,
+               const Eigen::Isometry3f& target_from_source, float min_cosine, int at_least) {
+  int agreeing = 0;
+  int left = static_cast<int>(source.screening_samples.size());
+  for (const std::uint32_t i : source.screening_samples) {
+    if (agreeing + left < at_least) return 0;
+    --left;
+    const Eigen::Vector3f point = target_from_source * source.cloud().points[i];
+    const Eigen::Vector3f normal = target_from_source.linear() * source.cloud().normals[i];
+    if (target.voxels.near(point, normal, min_cosine) >= 0) ++agreeing;
+  }
+  return agreeing;
+}
+
+Verification verifyPose(const ScanModel& target, const ScanModel& source,
+                        const Eigen::Isometry3d& target_from_source, double slack,
+                        const GlobalAlignmentParams& params) {
+  const auto tolerance = static_cast<float>(slack);
+  Verification result;
+  result.votes.reserve(source.samples.size() + target.samples.size());
+  result.of_source =
+      compare(target, source, target_from_source.cast<float>(), tolerance, params, result.votes);
+  result.of_target = compare(source, target, target_from_source.inverse().cast<float>(), tolerance,
+                             params, result.votes);
+  return result;
+}
+
+}  // namespace opp::mapping
