@@ -34,40 +34,64 @@ DepthImage blankImage(const PinholeCamera& camera, double range_unit, double max
   return image;
 }
 
-double angleOfIncidence(const Eigen::Vector3d& normal, const Eigen::Vector3d& direction) {
-  return std::acos(std::min(1.0, std::abs(normal.dot(direction)) / direction.norm()));
-}
-
 /// One Kinect exposure: what all pixels share.
 class KinectExposure {
  public:
   KinectExposure(const RayTracer& tracer, const Eigen::Isometry3d& map_from_sensor,
-                 const PinholeCamera& camera, const KinectModel& model)
-      : tracer_(tracer), map_from_sensor_(map_from_sensor), camera_(camera), model_(model) {
-    projector_in_map_ = map_from_sensor * Eigen::Vector3d(0.0, -model.baseline, 0.0);
+                 const PinholeCamera& camera, const KinectModel& model, std::uint64_t seed,
+                 std::uint64_t stream)
+      : tracer_(tracer),
+        map_from_sensor_(map_from_sensor),
+        camera_(camera),
+        model_(model),
+        seed_(seed),
+        stream_(stream),
+        projector_in_map_(map_from_sensor * Eigen::Vector3d(0.0, -model.baseline, 0.0)) {}
+
+  /// Traces displaced rays of a row; writes true depth, and the side where the surface sends
+  /// enough light back and the projector reaches it.
+  void exposeRow(int row, DepthImage& image) const {
+    const Eigen::Vector3d origin = map_from_sensor_.translation();
+    std::vector<SeededRandom> random;
+    std::vector<Eigen::Vector3d> directions;
+    for (int column = 0; column < camera_.width; ++column) {
+      random.emplace_back(seed_, stream_, image.index(column, row));
+      const auto shift = random.back().normalPair();
+      directions.emplace_back(map_from_sensor_.linear() *
+                              camera_.direction(column + model_.lateral_noise * shift[0],
+                                                row + model_.lateral_noise * shift[1]));
+    }
+    const std::vector<RayHit> hits = tracer_.trace(origin, directions);
+    std::vector<Eigen::Vector3d> points;
+    for (std::size_t i = 0; i < hits.size(); ++i) {
+      points.emplace_back(origin + hits[i].distance * directions[i]);
+    }
+    const std::vector<bool> shadow = tracer_.blocked(projector_in_map_, points);
+    for (std::size_t i = 0; i < hits.size(); ++i) {
+      if (!hits[i].valid()) continue;
+      const std::size_t pixel = image.index(static_cast<int>(i), row);
+      image.true_depth[pixel] = hits[i].distance;  // along the axis the direction measures 1
+      const bool lost = random[i].uniform() < grazingLoss(hits[i].side, directions[i]);
+      if (!lost && !shadow[i]) image.sides[pixel] = hits[i].side;
+    }
   }
 
-  /// Traces the pixel's displaced ray; writes depth and side where the surface can be measured.
-  void expose(int column, int row, SeededRandom& random, DepthImage& image) const {
-    const double displaced_column = column + model_.lateral_noise * random.normal();
-    const double displaced_row = row + model_.lateral_noise * random.normal();
-    const Eigen::Vector3d direction =
-        map_from_sensor_.linear() * camera_.direction(displaced_column, displaced_row);
-    const Eigen::Vector3d origin = map_from_sensor_.translation();
-    const RayHit hit = tracer_.trace(origin, direction);
-    if (!hit.valid()) return;
-    const std::size_t i = image.index(column, row);
-    image.true_depth[i] = hit.distance;  // the direction's component along the axis is 1
-    const double angle = angleOfIncidence(tracer_.sideNormal(hit.side), direction);
-    const double loss =
-        (angle - model_.grazing_start) / (model_.grazing_end - model_.grazing_start);
-    if (random.uniform() < loss) return;
-    if (tracer_.blocked(projector_in_map_, origin + hit.distance * direction)) return;
-    image.sides[i] = hit.side;
+  /// Counts of a pixel that exposeRow() gave a side; 0 if it fails at an edge or out of range.
+  std::uint16_t measure(int column, int row, const DepthImage& image) const {
+    const std::size_t pixel = image.index(column, row);
+    SeededRandom random(seed_, stream_, image.counts.size() + pixel);  // not the exposure's
+    if (atEdge(column, row, image) && random.uniform() < model_.edge_dropout) return 0;
+    return countsOf(measured(image.true_depth[pixel], random), model_.range_unit);
+  }
+
+ private:
+  double grazingLoss(int side, const Eigen::Vector3d& direction) const {
+    const double cosine = std::abs(tracer_.sideNormal(side).dot(direction)) / direction.norm();
+    if (cosine > std::cos(model_.grazing_start)) return 0.0;
+    return (std::acos(cosine) - model_.grazing_start) / (model_.grazing_end - model_.grazing_start);
   }
 
   double measured(double depth, SeededRandom& random) const {
-    if (model_.disparity_step <= 0.0) return depth;
     const double disparity = 1.0 / (depth * model_.disparity_step);
     const double rounded = std::round(disparity + model_.disparity_noise * random.normal());
     const double result = rounded > 0.0 ? 1.0 / (rounded * model_.disparity_step) : 0.0;
@@ -86,11 +110,12 @@ class KinectExposure {
     return false;
   }
 
- private:
   const RayTracer& tracer_;
   const Eigen::Isometry3d& map_from_sensor_;
   const PinholeCamera& camera_;
   const KinectModel& model_;
+  std::uint64_t seed_;
+  std::uint64_t stream_;
   Eigen::Vector3d projector_in_map_;
 };
 
@@ -111,14 +136,17 @@ DepthImage renderIdeal(const RayTracer& tracer, const Eigen::Isometry3d& map_fro
   DepthImage image =
       blankImage(camera, range_unit, range_unit * std::numeric_limits<std::uint16_t>::max());
   for (int row = 0; row < camera.height; ++row) {
+    std::vector<Eigen::Vector3d> directions;
     for (int column = 0; column < camera.width; ++column) {
-      const Eigen::Vector3d direction = map_from_sensor.linear() * camera.direction(column, row);
-      const RayHit hit = tracer.trace(map_from_sensor.translation(), direction);
-      if (!hit.valid()) continue;
-      const std::size_t i = image.index(column, row);
-      image.true_depth[i] = hit.distance;
-      image.counts[i] = countsOf(hit.distance, range_unit);
-      if (image.counts[i] != 0) image.sides[i] = hit.side;
+      directions.emplace_back(map_from_sensor.linear() * camera.direction(column, row));
+    }
+    const std::vector<RayHit> hits = tracer.trace(map_from_sensor.translation(), directions);
+    for (std::size_t i = 0; i < hits.size(); ++i) {
+      if (!hits[i].valid()) continue;
+      const std::size_t pixel = image.index(static_cast<int>(i), row);
+      image.true_depth[pixel] = hits[i].distance;
+      image.counts[pixel] = countsOf(hits[i].distance, range_unit);
+      if (image.counts[pixel] != 0) image.sides[pixel] = hits[i].side;
     }
   }
   return image;
@@ -129,24 +157,14 @@ DepthImage renderKinect(const RayTracer& tracer, const Eigen::Isometry3d& map_fr
                         std::uint64_t stream) {
   validate(model);
   DepthImage image = blankImage(camera, model.range_unit, model.max_range);
-  const KinectExposure exposure(tracer, map_from_sensor, camera, model);
-  std::vector<SeededRandom> random;
-  random.reserve(image.counts.size());
-  for (std::size_t i = 0; i < image.counts.size(); ++i) random.emplace_back(seed, stream, i);
+  const KinectExposure exposure(tracer, map_from_sensor, camera, model, seed, stream);
+  for (int row = 0; row < camera.height; ++row) exposure.exposeRow(row, image);
   for (int row = 0; row < camera.height; ++row) {
     for (int column = 0; column < camera.width; ++column) {
-      exposure.expose(column, row, random[image.index(column, row)], image);
-    }
-  }
-  for (int row = 0; row < camera.height; ++row) {
-    for (int column = 0; column < camera.width; ++column) {
-      const std::size_t i = image.index(column, row);
-      if (image.sides[i] < 0) continue;
-      const bool fails =
-          exposure.atEdge(column, row, image) && random[i].uniform() < model.edge_dropout;
-      const double depth = fails ? 0.0 : exposure.measured(image.true_depth[i], random[i]);
-      image.counts[i] = countsOf(depth, model.range_unit);
-      if (image.counts[i] == 0) image.sides[i] = -1;
+      const std::size_t pixel = image.index(column, row);
+      if (image.sides[pixel] < 0) continue;
+      image.counts[pixel] = exposure.measure(column, row, image);
+      if (image.counts[pixel] == 0) image.sides[pixel] = -1;
     }
   }
   return image;

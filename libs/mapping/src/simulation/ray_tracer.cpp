@@ -6,6 +6,7 @@
 
 #include <embree3/rtcore.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
@@ -58,6 +59,9 @@ struct RayTracer::Scene {
   std::vector<int> face_of_triangle;
 
   explicit Scene(const World& world);
+  /// The hit with the distance to the face's plane instead of Embree's, which is \p found.
+  RayHit exactHit(unsigned triangle, const Eigen::Vector3d& origin,
+                  const Eigen::Vector3d& direction, double found) const;
   Scene(const Scene&) = delete;
   Scene& operator=(const Scene&) = delete;
   ~Scene() {
@@ -105,51 +109,100 @@ RayTracer& RayTracer::operator=(RayTracer&&) noexcept = default;
 
 namespace {
 
-void setRay(RTCRay& ray, const Eigen::Vector3d& origin, const Eigen::Vector3d& direction,
-            float far) {
+constexpr std::size_t kPacket = 16;
+
+void setRay(RTCRay16& packet, std::size_t k, const Eigen::Vector3d& origin,
+            const Eigen::Vector3d& direction, float far) {
   const Eigen::Vector3f o = origin.cast<float>(), d = direction.cast<float>();
-  ray.org_x = o.x(), ray.org_y = o.y(), ray.org_z = o.z();
-  ray.dir_x = d.x(), ray.dir_y = d.y(), ray.dir_z = d.z();
-  ray.tnear = 0.0F;
-  ray.tfar = far;
-  ray.time = 0.0F;
-  ray.mask = ~0U;
-  ray.id = 0;
-  ray.flags = 0;
+  packet.org_x[k] = o.x(), packet.org_y[k] = o.y(), packet.org_z[k] = o.z();
+  packet.dir_x[k] = d.x(), packet.dir_y[k] = d.y(), packet.dir_z[k] = d.z();
+  packet.tnear[k] = 0.0F;
+  packet.tfar[k] = far;
+  packet.time[k] = 0.0F;
+  packet.mask[k] = ~0U;
+  packet.id[k] = 0;
+  packet.flags[k] = 0;
+}
+
+/// Rays 0 … count − 1 in packets: calls `fill(k, ray)` for each place k of a packet that gets a
+/// ray, then `run(valid, first, size)` for the packet.
+template <typename Fill, typename Run>
+void forEachPacket(std::size_t count, const Fill& fill, const Run& run) {
+  for (std::size_t first = 0; first < count; first += kPacket) {
+    const std::size_t size = std::min(kPacket, count - first);
+    alignas(64) std::array<int, kPacket> valid{};  // −1: take part
+    for (std::size_t k = 0; k < size; ++k) {
+      valid[k] = -1;
+      fill(k, first + k);
+    }
+    run(valid.data(), first, size);
+  }
+}
+
+RTCIntersectContext coherentContext() {
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+  return context;
 }
 
 }  // namespace
 
-RayHit RayTracer::trace(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction) const {
-  RTCRayHit query;
-  setRay(query.ray, origin, direction, std::numeric_limits<float>::infinity());
-  query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-  query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
-  RTCIntersectContext context;
-  rtcInitIntersectContext(&context);
-  rtcIntersect1(scene_->scene, &context, &query);
-  if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return {};
-  const int face = scene_->face_of_triangle[query.hit.primID];
-  const Plane& plane = scene_->planes[static_cast<std::size_t>(face)];
+RayHit RayTracer::Scene::exactHit(unsigned triangle, const Eigen::Vector3d& origin,
+                                  const Eigen::Vector3d& direction, double found) const {
+  const int face = face_of_triangle[triangle];
+  const Plane& plane = planes[static_cast<std::size_t>(face)];
   const double slope = plane.normal().dot(direction);
   const double distance = -plane.signedDistance(origin) / slope;
   // A face seen edge-on is as thin as nothing: there the two intersections disagree.
-  const double found = static_cast<double>(query.ray.tfar);
   if (!(std::abs(distance - found) <= kMaxDisagreement * found)) return {};
   return {2 * face + (slope < 0.0 ? 0 : 1), distance};
 }
 
-bool RayTracer::blocked(const Eigen::Vector3d& from, const Eigen::Vector3d& to,
-                        double slack) const {
-  const Eigen::Vector3d direction = to - from;
-  const double length = direction.norm();
-  if (!(length > slack)) return false;
-  RTCRay ray;
-  setRay(ray, from, direction, static_cast<float>(1.0 - slack / length));
-  RTCIntersectContext context;
-  rtcInitIntersectContext(&context);
-  rtcOccluded1(scene_->scene, &context, &ray);
-  return ray.tfar < 0.0F;
+RayHit RayTracer::trace(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction) const {
+  return trace(origin, std::vector<Eigen::Vector3d>{direction}).front();
+}
+
+std::vector<RayHit> RayTracer::trace(const Eigen::Vector3d& origin,
+                                     const std::vector<Eigen::Vector3d>& directions) const {
+  std::vector<RayHit> hits(directions.size());
+  RTCIntersectContext context = coherentContext();
+  RTCRayHit16 packet;
+  forEachPacket(
+      directions.size(),
+      [&](std::size_t k, std::size_t i) {
+        setRay(packet.ray, k, origin, directions[i], std::numeric_limits<float>::infinity());
+        packet.hit.geomID[k] = RTC_INVALID_GEOMETRY_ID;
+        packet.hit.instID[0][k] = RTC_INVALID_GEOMETRY_ID;
+      },
+      [&](const int* valid, std::size_t first, std::size_t size) {
+        rtcIntersect16(valid, scene_->scene, &context, &packet);
+        for (std::size_t k = 0; k < size; ++k) {
+          if (packet.hit.geomID[k] == RTC_INVALID_GEOMETRY_ID) continue;
+          hits[first + k] = scene_->exactHit(packet.hit.primID[k], origin, directions[first + k],
+                                             static_cast<double>(packet.ray.tfar[k]));
+        }
+      });
+  return hits;
+}
+
+std::vector<bool> RayTracer::blocked(const Eigen::Vector3d& from,
+                                     const std::vector<Eigen::Vector3d>& to, double slack) const {
+  std::vector<bool> result(to.size());
+  RTCIntersectContext context = coherentContext();
+  RTCRay16 packet;
+  forEachPacket(
+      to.size(),
+      [&](std::size_t k, std::size_t i) {
+        const Eigen::Vector3d direction = to[i] - from;
+        const double part = std::max(0.0, 1.0 - slack / direction.norm());
+        setRay(packet, k, from, direction, static_cast<float>(part));
+      },
+      [&](const int* valid, std::size_t first, std::size_t size) {
+        rtcOccluded16(valid, scene_->scene, &context, &packet);
+        for (std::size_t k = 0; k < size; ++k) result[first + k] = packet.tfar[k] < 0.0F;
+      });
+  return result;
 }
 
 Eigen::Vector3d RayTracer::sideNormal(int side) const {

@@ -29,9 +29,11 @@ double SeededRandom::uniform() {
   return static_cast<double>(bits() >> 11U) * 0x1.0p-53;  // 53 bits: all that a double holds
 }
 
-double SeededRandom::normal() {
+std::array<double, 2> SeededRandom::normalPair() {
   const double u = 1.0 - uniform();  // in (0, 1]: its logarithm is finite
-  return std::sqrt(-2.0 * std::log(u)) * std::cos(2.0 * kPi * uniform());
+  const double radius = std::sqrt(-2.0 * std::log(u));
+  const double angle = 2.0 * kPi * uniform();
+  return {radius * std::cos(angle), radius * std::sin(angle)};
 }
 
 }  // namespace opp::mapping

@@ -96,7 +96,7 @@ std::vector<PlanarMapCorner> seenCorners(const Geos& geos, const std::vector<See
         total += pixels;
         least = std::min(least, pixels);
       }
-      if (total < enough || 10 * least < enough) continue;
+      if (total < enough || 3 * least < enough) continue;
       PlanarMapCorner corner;
       corner.id = static_cast<int>(result.size());
       corner.planes = {i, j, k};

@@ -154,7 +154,7 @@ std::vector<SeenLine> seenLines(const std::vector<SeenPlane>& planes,
         const SplitCount on_a = pixelsNear(a, b.plane, seam, part, params.reach);
         const SplitCount on_b = pixelsNear(b, a.plane, seam, part, params.reach);
         if (on_a.total() + on_b.total() < enough) continue;
-        if (10 * std::min(on_a.total(), on_b.total()) < enough) continue;
+        if (3 * std::min(on_a.total(), on_b.total()) < enough) continue;
         const LineKind kind = kindOf(on_a, on_b);
         if (kind == LineKind::kUnknown) continue;  // faces touch, but form no edge that was seen
         result.push_back({seam.planes, seam.origin + part[0] * seam.direction,

@@ -2,6 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "opp/mapping/simulation/simulator.h"
 
+#include "opp/mapping/simulation/seeded_random.h"
+
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 #include <string>
@@ -18,40 +21,93 @@ SimulatedSensor simulatedSensorFromName(std::string_view name) {
                               "'; known: kinect, ideal, lidar16, lidar64");
 }
 
-Simulator::Simulator(Scene scene, const SimulationOptions& options)
-    : scene_(std::move(scene)),
-      options_(options),
-      tracer_(scene_.world),
-      path_(scene_.waypoints, scene_.motion, options.seed),
-      camera_(PinholeCamera().decimated(options.decimation)) {
+namespace {
+
+/// The way of a robot through the same way-points.
+void makePlanar(Scene& scene) {
+  for (Waypoint& waypoint : scene.waypoints) {
+    waypoint.position.z() = 0.0;
+    waypoint.pitch = 0.0;
+  }
+  scene.motion.jitter_position = 0.0;
+  scene.motion.jitter_angle = 0.0;
+}
+
+Scene prepared(Scene scene, const SimulationOptions& options) {
+  if (options.planar) makePlanar(scene);
+  return scene;
+}
+
+void requireValid(const SimulationOptions& options, bool closed) {
   if (options.frames < 0) throw std::invalid_argument("frames must not be negative");
   if (options.passes < 1) throw std::invalid_argument("passes must be at least 1");
-  if (options.passes > 1 && !path_.closed()) {
+  if (options.passes > 1 && !closed) {
     throw std::invalid_argument("more than one pass needs a path that ends where it starts");
   }
   if (!(options.rate >= 0.0 && options.rate <= 1e4)) {
     throw std::invalid_argument("rate must be from 0 to 10000 Hz");
   }
-  const double available = options.passes * path_.duration();
-  frames_ = options.frames > 0 ? options.frames : scene_.frames * options.passes;
-  if (options.rate > 0.0) {
-    const int most = 1 + static_cast<int>(std::floor(available * options.rate));
-    frames_ = options.frames > 0 ? std::min(options.frames, most) : most;
-    duration_ = (frames_ - 1) / options.rate;
+  if (!(options.drop_rate >= 0.0 && options.drop_rate < 1.0)) {
+    throw std::invalid_argument("drop rate must be at least 0 and less than 1");
+  }
+  if (!options.kidnap) return;
+  const auto [from, to] = *options.kidnap;
+  if (!(from > 0.0 && from < to && to < 1.0)) {
+    throw std::invalid_argument("kidnapping needs two shares of the way, 0 < from < to < 1");
+  }
+}
+
+}  // namespace
+
+Simulator::Simulator(Scene scene, const SimulationOptions& options)
+    : scene_(prepared(std::move(scene), options)),
+      options_(options),
+      tracer_(scene_.world),
+      path_(scene_.waypoints, scene_.motion, options.seed),
+      camera_(PinholeCamera().decimated(options.decimation)) {
+  requireValid(options, path_.closed());
+  double available = options.passes * path_.duration();
+  if (options.kidnap) {
+    jump_at_ = (*options.kidnap)[0] * available;
+    jump_ = ((*options.kidnap)[1] - (*options.kidnap)[0]) * available;
+    available -= jump_;
+  }
+  chooseTimes(available);
+}
+
+void Simulator::chooseTimes(double available) {
+  int count = options_.frames > 0 ? options_.frames : scene_.frames * options_.passes;
+  double step = 0.0;
+  if (options_.rate > 0.0) {
+    const int most = 1 + static_cast<int>(std::floor(available * options_.rate));
+    count = options_.frames > 0 ? std::min(options_.frames, most) : most;
+    step = 1.0 / options_.rate;
   } else {
     // On a closed path the frame after the last one would be the first again.
-    const int intervals = std::max(1, path_.closed() ? frames_ : frames_ - 1);
-    duration_ = available * (frames_ - 1) / intervals;
+    step = available / std::max(1, path_.closed() ? count : count - 1);
+  }
+  constexpr std::uint64_t kStream = 0x64726F70;  // "drop": not a frame's number
+  for (int i = 0; i < count; ++i) {
+    SeededRandom random(options_.seed, kStream, static_cast<std::uint64_t>(i));
+    const bool lost = random.uniform() < options_.drop_rate;
+    if (i == 0 || !lost) times_.push_back(step * i);
   }
 }
 
 double Simulator::pathTime(int index) const {
-  if (index < 0 || index >= frames_) throw std::invalid_argument("no frame of this number");
-  return frames_ > 1 ? duration_ * index / (frames_ - 1) : 0.0;
+  if (index < 0 || index >= frames()) throw std::invalid_argument("no frame of this number");
+  const double time = times_[static_cast<std::size_t>(index)];
+  return jump_ > 0.0 && time > jump_at_ ? time + jump_ : time;
+}
+
+bool Simulator::kidnappedBefore(int index) const {
+  return jump_ > 0.0 && index > 0 && times_.at(static_cast<std::size_t>(index)) > jump_at_ &&
+         times_.at(static_cast<std::size_t>(index) - 1) <= jump_at_;
 }
 
 double Simulator::timestamp(int index) const {
-  return std::round((options_.start_time + pathTime(index)) * 1e6) * 1e-6;
+  return std::round((options_.start_time + times_.at(static_cast<std::size_t>(index))) * 1e6) *
+         1e-6;
 }
 
 Eigen::Isometry3d Simulator::mapFromBody(int index) const {

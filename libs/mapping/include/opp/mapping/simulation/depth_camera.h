@@ -58,7 +58,7 @@ struct KinectModel {
 
   template <typename Self, typename F>
   static void visit(Self&& p, F&& f) {
-    f(p.disparity_step, Field{"disparity_step", "1/m", 0.0, 0.1, "resolution of 1/depth"});
+    f(p.disparity_step, Field{"disparity_step", "1/m", 1e-9, 0.1, "resolution of 1/depth"});
     f(p.disparity_noise, Field{"disparity_noise", "", 0.0, 100.0, "in disparity steps (1 sigma)"});
     f(p.lateral_noise, Field{"lateral_noise", "px", 0.0, 10.0, "of a pixel's ray (1 sigma)"});
     f(p.baseline, Field{"baseline", "m", 0.0, 1.0, "projector to camera; casts the shadow"});

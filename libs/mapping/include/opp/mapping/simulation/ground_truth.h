@@ -43,7 +43,7 @@ struct GroundTruthParams {
 ///   clipped to what was seen; points counts pixels; observations are the frames that alone had
 ///   min_pixels on it.
 /// - Line: where faces of two orthogonal planes touch along a seam and both were seen there, with
-///   min_pixels within `reach` of it, a tenth of them at least on either plane.
+///   min_pixels within `reach` of it, a third of min_pixels at least on either plane.
 /// - Corner: the same for a point of three mutually orthogonal planes.
 /// Independent of all detection code. Memory: one counter for each cell of the faces hit.
 class GroundTruth {

@@ -48,7 +48,7 @@ struct LidarModel {
   }
 };
 
-/// Returns of one turn, column by column, lost ones left out.
+/// Returns of one turn, ring by ring from below, lost ones left out.
 struct LidarScan {
   std::vector<Eigen::Vector3f> points;  ///< in the sensor frame [m]
   std::vector<int> sides;               ///< of the world

@@ -7,6 +7,7 @@
 #include <Eigen/Core>
 
 #include <memory>
+#include <vector>
 
 namespace opp::mapping {
 
@@ -30,10 +31,16 @@ class RayTracer {
   RayTracer(RayTracer&&) noexcept;
   RayTracer& operator=(RayTracer&&) noexcept;
 
-  /// First hit of origin + t · direction, t > 0 (double-sided).
+  /// First hit of origin + t · direction, t > 0, of either side of a face.
   RayHit trace(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction) const;
-  /// Whether something lies between two points, the last `slack` [m] before `to` excepted.
-  bool blocked(const Eigen::Vector3d& from, const Eigen::Vector3d& to, double slack = 1e-3) const;
+  /// trace() for each direction; faster by a factor of 2 to 3 where neighbours in the list are
+  /// neighbours in space.
+  std::vector<RayHit> trace(const Eigen::Vector3d& origin,
+                            const std::vector<Eigen::Vector3d>& directions) const;
+  /// For each point of `to` whether something lies between it and `from`, the last `slack` [m]
+  /// before the point excepted.
+  std::vector<bool> blocked(const Eigen::Vector3d& from, const std::vector<Eigen::Vector3d>& to,
+                            double slack = 1e-3) const;
   /// Normal of a side, toward where it is seen from.
   Eigen::Vector3d sideNormal(int side) const;
 

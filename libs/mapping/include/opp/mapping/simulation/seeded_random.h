@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <array>
 #include <cstdint>
 
 namespace opp::mapping {
@@ -15,7 +16,9 @@ class SeededRandom {
 
   std::uint64_t bits();
   double uniform();  ///< in [0, 1)
-  double normal();   ///< mean 0, standard deviation 1 (Box–Muller)
+  /// Two independent numbers of mean 0 and standard deviation 1 (Box–Muller).
+  std::array<double, 2> normalPair();
+  double normal() { return normalPair()[0]; }
 
  private:
   std::uint64_t state_;

@@ -8,9 +8,12 @@
 
 #include <Eigen/Geometry>
 
+#include <array>
 #include <cstdint>
+#include <optional>
 #include <string_view>
 #include <variant>
+#include <vector>
 
 namespace opp::mapping {
 
@@ -30,6 +33,13 @@ struct SimulationOptions {
   /// Unit of the `ideal` camera's 16-bit depth [m]: reaches 13.1 m, rounds by at most 0.1 mm.
   double ideal_range_unit = 2e-4;
   Eigen::Isometry3d body_from_sensor = Eigen::Isometry3d::Identity();
+  /// The body is a robot: it drives through the way-points on the floor z = 0, level and without
+  /// unrest. The sensor's height and tilt are those of body_from_sensor alone.
+  bool planar = false;
+  double drop_rate = 0.0;  ///< share of the frames that get lost (never the first)
+  /// Shares [from, to] of the whole way that the body is carried over unseen, while its clock
+  /// stands still: a jump.
+  std::optional<std::array<double, 2>> kidnap;
 };
 
 /// One observation and what is true about it.
@@ -48,13 +58,18 @@ class Simulator {
 
   const Scene& scene() const { return scene_; }
   const SimulationOptions& options() const { return options_; }
-  int frames() const { return frames_; }
-  double duration() const { return duration_; }  ///< from first to last frame [s]
+  int frames() const { return static_cast<int>(times_.size()); }
+  double duration() const {
+    return times_.back() - times_.front();
+  }  ///< from first to last frame [s]
+  /// Whether the body was kidnapped between the frame before and this one.
+  bool kidnappedBefore(int index) const;
   Eigen::Isometry3d mapFromBody(int index) const;
   double timestamp(int index) const;
   SimulatedFrame frame(int index) const;
 
  private:
+  void chooseTimes(double available);
   double pathTime(int index) const;
 
   Scene scene_;
@@ -62,8 +77,9 @@ class Simulator {
   RayTracer tracer_;
   HandPath path_;
   PinholeCamera camera_;
-  int frames_ = 0;
-  double duration_ = 0.0;
+  std::vector<double> times_;  ///< of the frames, from the first on [s]
+  double jump_at_ = 0.0;       ///< time of the kidnapping [s]
+  double jump_ = 0.0;          ///< path time that it skips [s]
 };
 
 }  // namespace opp::mapping
