@@ -1,0 +1,34 @@
+// SPDX-FileCopyrightText: 2026 The opp-mapping authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <string>
+#include <vector>
+
+namespace opp::mapping {
+
+/// What became of one input rawlog.
+struct SessionReport {
+  std::string path;
+  std::uintmax_t bytes = 0;
+  std::string sha256;           ///< of the file, hexadecimal
+  std::size_t frames_read = 0;  ///< 3D observations delivered by the reader
+  std::size_t frames_used = 0;  ///< localized; each has a line in trajectory.tum
+  std::size_t frames_lost = 0;  ///< read, but not localized
+  std::size_t keyframes = 0;
+  double path_length = 0.0;  ///< of the localized frames [m]
+  std::size_t loop_closures = 0;
+};
+
+/// What a run did: the contents of run.json.
+struct RunReport {
+  std::vector<SessionReport> sessions;
+  std::map<std::string, std::size_t> counts;  ///< planes, lines, corners, keyframes, ...
+  std::map<std::string, double> seconds;      ///< wall time per stage [s]
+  std::vector<std::string> warnings;
+};
+
+}  // namespace opp::mapping

@@ -1,0 +1,25 @@
+// SPDX-FileCopyrightText: 2026 The opp-mapping authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "opp/mapping/core/run_report.h"
+#include "opp/mapping/io/rawlog_reader.h"
+#include "opp/mapping/pipeline/mapper.h"
+
+#include <filesystem>
+#include <functional>
+
+namespace opp::mapping {
+
+/// Called after each scan with the part of the rawlog that is done, in [0, 1], and the number of
+/// scans so far.
+using ProgressCallback = std::function<void(double, std::size_t)>;
+
+/// Feeds all wanted scans of a rawlog to a mapper and finishes it. Damage of the file and lost
+/// scans become warnings of the report; what was read before is kept. \throws std::runtime_error if
+/// the rawlog cannot be read or holds no 3D observation that is wanted.
+void mapRawlog(const std::filesystem::path& rawlog, const RawlogOptions& options,
+               const PrimitiveParams& params, int threads, const ProgressCallback& progress,
+               Mapper& mapper, RunReport& report);
+
+}  // namespace opp::mapping
