@@ -5,7 +5,9 @@
 #include "opp/mapping/io/sha256.h"
 #include "opp/mapping/pipeline/feature_stream.h"
 
+#include <algorithm>
 #include <chrono>
+#include <optional>
 #include <utility>
 
 namespace opp::mapping {
@@ -27,6 +29,17 @@ double pathLength(const Trajectory& trajectory) {
   return length;
 }
 
+/// Predictions are for a scan if their stamps agree this well [s]: text files round stamps.
+constexpr double kSameTime = 1e-3;
+
+std::optional<Eigen::Isometry3d> poseNear(const Trajectory& trajectory, double timestamp) {
+  const auto pose =
+      std::lower_bound(trajectory.begin(), trajectory.end(), timestamp - kSameTime,
+                       [](const StampedPose& p, double time) { return p.timestamp < time; });
+  if (pose == trajectory.end() || pose->timestamp > timestamp + kSameTime) return std::nullopt;
+  return pose->map_from_body;
+}
+
 void addWarnings(const RawlogReader& reader, const SessionReport& session, RunReport& report) {
   if (!reader.damage().empty()) report.warnings.push_back(reader.damage());
   for (const auto& [reason, count] : reader.counts().skipped) {
@@ -42,18 +55,21 @@ void addWarnings(const RawlogReader& reader, const SessionReport& session, RunRe
 
 }  // namespace
 
-void mapRawlog(const std::filesystem::path& rawlog, const RawlogOptions& options,
-               const PrimitiveParams& params, int threads, const ProgressCallback& progress,
-               Mapper& mapper, RunReport& report) {
-  RawlogReader reader(rawlog, options);
-  FeatureStream stream(reader, params, threads);
+void mapRawlog(const std::filesystem::path& rawlog, const MapRawlogOptions& options,
+               const PrimitiveParams& params, const ProgressCallback& progress, Mapper& mapper,
+               RunReport& report) {
+  RawlogReader reader(rawlog, options.selection);
+  FeatureStream stream(reader, params, options.threads);
   SessionReport session;
   session.path = rawlog.string();
   const Clock::time_point start = Clock::now();
   double seconds_tracking = 0.0;
   while (std::optional<FeatureFrame> frame = stream.next()) {
     const Clock::time_point start_tracking = Clock::now();
-    const FrameResult result = mapper.add(std::move(frame->features), frame->odom_from_body);
+    const auto given = poseNear(options.initial_poses, frame->features.timestamp);
+    if (given && session.frames_read == 0) mapper.setInitialPose(*given);
+    const FrameResult result =
+        mapper.add(std::move(frame->features), given ? given : frame->odom_from_body);
     seconds_tracking += secondsSince(start_tracking);
     ++session.frames_read;
     ++(result.localized ? session.frames_used : session.frames_lost);

@@ -15,11 +15,19 @@ namespace opp::mapping {
 /// scans so far.
 using ProgressCallback = std::function<void(double, std::size_t)>;
 
+/// Which scans of a rawlog to map, and how.
+struct MapRawlogOptions {
+  RawlogOptions selection;
+  Trajectory initial_poses;  ///< predictions of map_from_body that go before the rawlog's odometry;
+                             ///< may be empty
+  int threads = 0;           ///< <= 0: all cores
+};
+
 /// Feeds all wanted scans of a rawlog to a mapper and finishes it. Damage of the file and lost
 /// scans become warnings of the report; what was read before is kept. \throws std::runtime_error if
 /// the rawlog cannot be read or holds no 3D observation that is wanted.
-void mapRawlog(const std::filesystem::path& rawlog, const RawlogOptions& options,
-               const PrimitiveParams& params, int threads, const ProgressCallback& progress,
-               Mapper& mapper, RunReport& report);
+void mapRawlog(const std::filesystem::path& rawlog, const MapRawlogOptions& options,
+               const PrimitiveParams& params, const ProgressCallback& progress, Mapper& mapper,
+               RunReport& report);
 
 }  // namespace opp::mapping

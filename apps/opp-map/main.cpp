@@ -1,0 +1,65 @@
+// SPDX-FileCopyrightText: 2026 The opp-mapping authors
+// SPDX-License-Identifier: BSD-3-Clause
+// opp-map: rawlog in, map out.
+#include "opp/mapping/io/atomic_file.h"
+#include "opp/mapping/io/output_folder.h"
+#include "opp/mapping/io/parameters.h"
+#include "opp/mapping/io/run_json.h"
+#include "opp/mapping/io/tum_trajectory.h"
+#include "opp/mapping/pipeline/map_rawlog.h"
+#include "opp/mapping/pipeline/mapper.h"
+
+#include "common/progress.h"
+#include "common/run_main.h"
+#include "opp-map/options.h"
+
+#include <filesystem>
+#include <ostream>
+
+namespace {
+
+using opp::apps::MapOptions;
+
+opp::mapping::Mapper buildMap(const MapOptions& options, opp::mapping::RunReport& report) {
+  opp::mapping::MapRawlogOptions input;
+  input.selection = options.selection;
+  input.threads = options.threads;
+  if (options.initial_poses)
+    input.initial_poses = opp::mapping::readTumTrajectory(*options.initial_poses);
+  opp::mapping::Mapper mapper(options.params);
+  opp::apps::Progress progress("mapping", "frames", opp::apps::Progress::modeFor(options.quiet));
+  opp::mapping::mapRawlog(
+      options.rawlog, input, options.params.primitives,
+      [&](double fraction, std::size_t frames) { progress.update(fraction, frames); }, mapper,
+      report);
+  progress.finish();
+  for (const std::string& warning : report.warnings) progress.log("warning: " + warning);
+  return mapper;
+}
+
+void writeResults(const MapOptions& options, const opp::mapping::Mapper& mapper,
+                  const opp::mapping::RunReport& report, const std::filesystem::path& folder) {
+  opp::mapping::writeTumTrajectory(folder / "trajectory.tum", mapper.trajectory());
+  opp::mapping::writeFileAtomically(folder / "effective.ini", [&](std::ostream& os) {
+    opp::mapping::writeParameters(os, options.params);
+  });
+  opp::mapping::writeFileAtomically(folder / "run.json", [&](std::ostream& os) {
+    opp::mapping::writeRunJson(os, report, options.params);
+  });
+}
+
+void run(opp::apps::CommandLine& line) {
+  const MapOptions options = opp::apps::parseOptions(line);
+  opp::mapping::OutputFolder output(options.output, options.force);
+  opp::mapping::RunReport report;
+  const opp::mapping::Mapper mapper = buildMap(options, report);
+  writeResults(options, mapper, report, output.path());
+  output.commit();
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  return opp::apps::runMain(argc, argv, "opp-map",
+                            "Builds a map of planes, lines and corners from a rawlog.", run);
+}
