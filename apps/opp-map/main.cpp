@@ -6,6 +6,7 @@
 #include "opp/mapping/io/parameters.h"
 #include "opp/mapping/io/run_json.h"
 #include "opp/mapping/io/tum_trajectory.h"
+#include "opp/mapping/pipeline/build_occupancy_map.h"
 #include "opp/mapping/pipeline/map_rawlog.h"
 #include "opp/mapping/pipeline/mapper.h"
 
@@ -13,6 +14,7 @@
 #include "common/run_main.h"
 #include "opp-map/options.h"
 
+#include <chrono>
 #include <filesystem>
 #include <ostream>
 
@@ -37,6 +39,20 @@ opp::mapping::Mapper buildMap(const MapOptions& options, opp::mapping::RunReport
   return mapper;
 }
 
+void writeOccupancyMap(const MapOptions& options, const opp::mapping::Mapper& mapper,
+                       opp::mapping::RunReport& report, const std::filesystem::path& folder) {
+  const auto start = std::chrono::steady_clock::now();
+  opp::apps::Progress progress("octomap", "frames", opp::apps::Progress::modeFor(options.quiet));
+  const opp::mapping::OccupancyMap map = opp::mapping::buildOccupancyMap(
+      options.rawlog, options.selection, mapper.poses(), options.params.primitives.sensor,
+      options.params.occupancy, options.threads,
+      [&](double fraction, std::size_t frames) { progress.update(fraction, frames); });
+  progress.finish();
+  map.write(folder / "map.ot", folder / "map.bt");
+  report.seconds["octomap"] =
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
 void writeResults(const MapOptions& options, const opp::mapping::Mapper& mapper,
                   const opp::mapping::RunReport& report, const std::filesystem::path& folder) {
   opp::mapping::writeTumTrajectory(folder / "trajectory.tum", mapper.trajectory());
@@ -53,6 +69,7 @@ void run(opp::apps::CommandLine& line) {
   opp::mapping::OutputFolder output(options.output, options.force);
   opp::mapping::RunReport report;
   const opp::mapping::Mapper mapper = buildMap(options, report);
+  if (options.octomap) writeOccupancyMap(options, mapper, report, output.path());
   writeResults(options, mapper, report, output.path());
   output.commit();
 }

@@ -28,8 +28,8 @@ MapOptions parseOptions(CommandLine& line) {
                                      "FILE.tum", line);
   TCLAP::SwitchArg no_octomap("", "no-octomap", "Write no map.ot and map.bt", line);
   TCLAP::ValueArg<double> resolution("", "resolution",
-                                     "Edge of an OctoMap voxel [m]; sets octomap.resolution", false,
-                                     0.05, "metres", line);
+                                     "Edge of an OctoMap voxel [m]; sets occupancy.resolution",
+                                     false, 0.05, "metres", line);
   ForceFlag force(line);
   ThreadsFlag threads(line);
   QuietFlag quiet(line);
@@ -45,7 +45,7 @@ MapOptions parseOptions(CommandLine& line) {
   if (poses.isSet()) options.initial_poses = poses.getValue();
   parameters.applyTo(options.params);
   if (resolution.isSet()) {
-    mapping::setParameter("octomap.resolution=" + std::to_string(resolution.getValue()),
+    mapping::setParameter("occupancy.resolution=" + std::to_string(resolution.getValue()),
                           options.params, "--resolution");
   }
   options.octomap = !no_octomap.getValue();

@@ -31,6 +31,7 @@ FrameResult Mapper::add(ScanFeatures scan, const std::optional<Eigen::Isometry3d
   if (map_.keyframes.empty()) return start(std::move(scan), odom_from_body);
 
   const double timestamp = scan.timestamp;
+  const std::size_t index = scan.scan_index;
   const PosePrior prior = motion_.predict(timestamp, odom_from_body);
   const MatchResult match = matchScan(scan, *local_map_, prior, params_.registration);
   FrameResult result{match.overlap >= params_.frontend.min_overlap, false, match.overlap,
@@ -42,9 +43,9 @@ FrameResult Mapper::add(ScanFeatures scan, const std::optional<Eigen::Isometry3d
   if (result.is_keyframe) {
     addKeyframe(std::move(scan), match);
     motion_.correct(map_.keyframes.back().map_from_body);
-    follow(timestamp, map_.keyframes.back().map_from_body);
+    follow(timestamp, index, map_.keyframes.back().map_from_body);
   } else {
-    follow(timestamp, match.map_from_body);
+    follow(timestamp, index, match.map_from_body);
   }
   return result;
 }
@@ -54,9 +55,10 @@ FrameResult Mapper::start(ScanFeatures scan,
   MatchResult match;
   match.map_from_body = initial_pose_;
   const double timestamp = scan.timestamp;
+  const std::size_t index = scan.scan_index;
   motion_.update({timestamp, initial_pose_}, odom_from_body);
   addKeyframe(std::move(scan), match);
-  follow(timestamp, initial_pose_);
+  follow(timestamp, index, initial_pose_);
   return {true, true, 1.0, 0.0};
 }
 
@@ -74,10 +76,11 @@ void Mapper::addKeyframe(ScanFeatures scan, const MatchResult& match) {
   rebuildLocalMap();
 }
 
-void Mapper::follow(double timestamp, const Eigen::Isometry3d& map_from_body) {
+void Mapper::follow(double timestamp, std::size_t scan_index,
+                    const Eigen::Isometry3d& map_from_body) {
   const Eigen::Isometry3d keyframe_from_map = map_.keyframes.back().map_from_body.inverse();
-  followers_.push_back(
-      {timestamp, static_cast<int>(map_.keyframes.size()) - 1, keyframe_from_map * map_from_body});
+  followers_.push_back({timestamp, scan_index, static_cast<int>(map_.keyframes.size()) - 1,
+                        keyframe_from_map * map_from_body});
 }
 
 void Mapper::optimize(int first_free) {
@@ -131,14 +134,21 @@ void Mapper::finish() {
   if (map_.keyframes.size() > 1) optimize(1);
 }
 
+Eigen::Isometry3d Mapper::poseOf(const Follower& follower) const {
+  const Keyframe& keyframe = map_.keyframes[static_cast<std::size_t>(follower.keyframe)];
+  return normalized(keyframe.map_from_body * follower.keyframe_from_body);
+}
+
 Trajectory Mapper::trajectory() const {
   Trajectory result;
-  for (const Follower& follower : followers_) {
-    const Eigen::Isometry3d& map_from_keyframe =
-        map_.keyframes[static_cast<std::size_t>(follower.keyframe)].map_from_body;
-    result.push_back(
-        {follower.timestamp, normalized(map_from_keyframe * follower.keyframe_from_body)});
-  }
+  for (const Follower& follower : followers_)
+    result.push_back({follower.timestamp, poseOf(follower)});
+  return result;
+}
+
+std::map<std::size_t, Eigen::Isometry3d> Mapper::poses() const {
+  std::map<std::size_t, Eigen::Isometry3d> result;
+  for (const Follower& follower : followers_) result.emplace(follower.scan_index, poseOf(follower));
   return result;
 }
 

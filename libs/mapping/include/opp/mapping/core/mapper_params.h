@@ -3,6 +3,7 @@
 #pragma once
 
 #include "opp/mapping/backend/backend_params.h"
+#include "opp/mapping/dense/occupancy_params.h"
 #include "opp/mapping/frontend/frontend_params.h"
 #include "opp/mapping/registration/registration_params.h"
 #include "opp/params/primitive_params.h"
@@ -17,6 +18,7 @@ struct MapperParams {
   RegistrationParams registration;
   FrontendParams frontend;
   BackendParams backend;
+  OccupancyParams occupancy;
 
   /// Calls f(section) for each stage, in the order of the stages.
   template <typename Self, typename F>
@@ -25,6 +27,7 @@ struct MapperParams {
     f(p.registration);
     f(p.frontend);
     f(p.backend);
+    f(p.occupancy);
   }
 };
 

@@ -8,6 +8,7 @@
 #include "opp/mapping/frontend/motion_model.h"
 #include "opp/mapping/registration/local_map.h"
 
+#include <map>
 #include <optional>
 #include <vector>
 
@@ -41,11 +42,14 @@ class Mapper {
   const MapState& map() const { return map_; }
   /// Poses of all localized scans, with all that was learned after them.
   Trajectory trajectory() const;
+  /// The same poses by ScanFeatures::scan_index.
+  std::map<std::size_t, Eigen::Isometry3d> poses() const;
 
  private:
   /// A localized scan follows the keyframe that was the newest when it came.
   struct Follower {
     double timestamp;
+    std::size_t scan_index;
     int keyframe;
     Eigen::Isometry3d keyframe_from_body;
   };
@@ -53,7 +57,8 @@ class Mapper {
   FrameResult start(ScanFeatures scan, const std::optional<Eigen::Isometry3d>& odom_from_body);
   bool wantsKeyframe(const MatchResult& match) const;
   void addKeyframe(ScanFeatures scan, const MatchResult& match);
-  void follow(double timestamp, const Eigen::Isometry3d& map_from_body);
+  void follow(double timestamp, std::size_t scan_index, const Eigen::Isometry3d& map_from_body);
+  Eigen::Isometry3d poseOf(const Follower& follower) const;
   void optimize(int first_free);
   void rebuildLocalMap();
   std::vector<int> localKeyframes() const;
