@@ -26,6 +26,7 @@ class CommandLine : public TCLAP::CmdLine {
   /// Fills the flags. --help and --version end the program with exit code 0.
   /// \throws TCLAP::ArgException for wrong usage; runMain turns it into exit code 2.
   void parse();
+  using TCLAP::CmdLine::parse;
 
  private:
   std::vector<std::string> arguments_;

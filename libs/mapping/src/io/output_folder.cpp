@@ -48,7 +48,7 @@ void clear(const fs::path& folder) {
 
 }  // namespace
 
-OutputFolder::OutputFolder(fs::path folder, bool force)
+OutputFolder::OutputFolder(const fs::path& folder, bool force)
     : folder_(fs::absolute(folder).lexically_normal()) {
   if (folder_.filename().empty()) folder_ = folder_.parent_path();  // "out/" is "out"
   existing_ancestor_ = folder_;

@@ -20,14 +20,14 @@ bool isAngle(const Field& field) { return field.unit == "rad"; }
 /// Shortest text that reads back as the same number.
 template <typename Number>
 std::string shortest(Number number) {
-  std::array<char, 32> buffer;  // the longest double takes 24 characters
+  std::array<char, 32> buffer{};  // the longest double takes 24 characters
   const auto end = std::to_chars(buffer.data(), buffer.data() + buffer.size(), number).ptr;
   return {buffer.data(), end};
 }
 
 /// At most six significant digits, enough for a bound or a rounded angle.
 std::string rounded(double number) {
-  std::array<char, 32> buffer;
+  std::array<char, 32> buffer{};
   const auto end = std::to_chars(buffer.data(), buffer.data() + buffer.size(), number,
                                  std::chars_format::general, 6)
                        .ptr;

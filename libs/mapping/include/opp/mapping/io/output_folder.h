@@ -23,7 +23,7 @@ class OutputFolder {
   /// \param force replace the results of an earlier run.
   /// \throws std::runtime_error if the folder holds results of a run and `force` is not set, if it
   /// is no folder or cannot be written, or if another run is writing into it.
-  OutputFolder(std::filesystem::path folder, bool force);
+  OutputFolder(const std::filesystem::path& folder, bool force);
   ~OutputFolder();
   OutputFolder(const OutputFolder&) = delete;
   OutputFolder& operator=(const OutputFolder&) = delete;
