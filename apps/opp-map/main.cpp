@@ -4,11 +4,13 @@
 #include "opp/mapping/io/atomic_file.h"
 #include "opp/mapping/io/output_folder.h"
 #include "opp/mapping/io/parameters.h"
+#include "opp/mapping/io/planar_map_json.h"
 #include "opp/mapping/io/run_json.h"
 #include "opp/mapping/io/tum_trajectory.h"
 #include "opp/mapping/pipeline/build_occupancy_map.h"
 #include "opp/mapping/pipeline/map_rawlog.h"
 #include "opp/mapping/pipeline/mapper.h"
+#include "opp/mapping/planar/planar_map_of_landmarks.h"
 
 #include "common/progress.h"
 #include "common/run_main.h"
@@ -21,6 +23,10 @@
 namespace {
 
 using opp::apps::MapOptions;
+
+double secondsSince(std::chrono::steady_clock::time_point start) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
 
 opp::mapping::Mapper buildMap(const MapOptions& options, opp::mapping::RunReport& report) {
   opp::mapping::MapRawlogOptions input;
@@ -49,8 +55,19 @@ void writeOccupancyMap(const MapOptions& options, const opp::mapping::Mapper& ma
       [&](double fraction, std::size_t frames) { progress.update(fraction, frames); });
   progress.finish();
   map.write(folder / "map.ot", folder / "map.bt");
-  report.seconds["octomap"] =
-      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  report.seconds["octomap"] = secondsSince(start);
+}
+
+void writePlanarMap(const MapOptions& options, const opp::mapping::Mapper& mapper,
+                    opp::mapping::RunReport& report, const std::filesystem::path& folder) {
+  const auto start = std::chrono::steady_clock::now();
+  const opp::mapping::PlanarMap map = opp::mapping::planarMapOf(mapper.map(), options.params.planar);
+  opp::mapping::writePlanarMap(folder / "planar_map.json", map);
+  report.counts["planes"] = map.planes.size();
+  report.counts["lines"] = map.lines.size();
+  report.counts["corners"] = map.corners.size();
+  report.counts["families"] = map.families.size();
+  report.seconds["planar_map"] = secondsSince(start);
 }
 
 void writeResults(const MapOptions& options, const opp::mapping::Mapper& mapper,
@@ -69,6 +86,7 @@ void run(opp::apps::CommandLine& line) {
   opp::mapping::OutputFolder output(options.output, options.force);
   opp::mapping::RunReport report;
   const opp::mapping::Mapper mapper = buildMap(options, report);
+  writePlanarMap(options, mapper, report, output.path());
   if (options.octomap) writeOccupancyMap(options, mapper, report, output.path());
   writeResults(options, mapper, report, output.path());
   output.commit();

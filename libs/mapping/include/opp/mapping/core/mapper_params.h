@@ -5,6 +5,7 @@
 #include "opp/mapping/backend/backend_params.h"
 #include "opp/mapping/dense/occupancy_params.h"
 #include "opp/mapping/frontend/frontend_params.h"
+#include "opp/mapping/planar/planar_params.h"
 #include "opp/mapping/registration/registration_params.h"
 #include "opp/params/primitive_params.h"
 
@@ -19,6 +20,7 @@ struct MapperParams {
   FrontendParams frontend;
   BackendParams backend;
   OccupancyParams occupancy;
+  PlanarParams planar;
 
   /// Calls f(section) for each stage, in the order of the stages.
   template <typename Self, typename F>
@@ -28,6 +30,7 @@ struct MapperParams {
     f(p.frontend);
     f(p.backend);
     f(p.occupancy);
+    f(p.planar);
   }
 };
 
