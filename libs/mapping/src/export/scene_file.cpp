@@ -23,7 +23,11 @@ namespace {
 constexpr int kMinSize = 16;
 constexpr int kMaxSize = 8192;
 constexpr double kFieldOfView = 0.6;  ///< [rad] vertical, of the perspective view
-constexpr double kBorder = 1.05;      ///< the view is this much bigger than the map
+/// [rad] vertical, of the top view: from so far away that walls seem to stand upright.
+constexpr double kTopFieldOfView = 0.05;
+constexpr double kBorder = 1.05;  ///< the top view is this much wider than the map
+/// The perspective view encloses the map's circumscribed sphere times this: maps are flat.
+constexpr double kFill = 0.85;
 
 Eigen::AlignedBox3d boundsOf(const PlanarMap& map, const Trajectory& trajectory) {
   Eigen::AlignedBox3d bounds;
@@ -37,40 +41,41 @@ Eigen::AlignedBox3d boundsOf(const PlanarMap& map, const Trajectory& trajectory)
   return bounds;
 }
 
-void aim(const RenderOptions& options, const Eigen::AlignedBox3d& bounds,
-         mrpt::opengl::CCamera& camera) {
+/// Points the camera at the map; returns the distance of the eye from its centre.
+double aim(const RenderOptions& options, const Eigen::AlignedBox3d& bounds,
+           mrpt::opengl::CCamera& camera) {
   const Eigen::Vector3d center = bounds.center();
   const Eigen::Vector3d size = bounds.sizes().cwiseMax(1.0);
   const double aspect = static_cast<double>(options.width) / options.height;
+  const bool is_top = options.view == SceneView::kTop;
+  const double field_of_view = is_top ? kTopFieldOfView : kFieldOfView;
+  const double half_tangent = std::tan(0.5 * field_of_view);
+  const double narrowest = std::atan(half_tangent * std::min(1.0, aspect));
+  const double distance =
+      is_top ? kBorder * 0.5 * std::max(size.y(), size.x() / aspect) / half_tangent + size.z()
+             : kFill * 0.5 * size.norm() / std::sin(narrowest);
   camera.setPointingAt(mrpt::math::TPoint3D(center.x(), center.y(), center.z()));
-  if (options.view == SceneView::kTop) {
-    // MRPT's orthographic camera shows a width of its distance.
-    camera.setOrthogonal(true);
-    camera.setZoomDistance(static_cast<float>(kBorder * std::max(size.x(), size.y() * aspect)));
-    camera.setAzimuthDegrees(-90.0F);
-    camera.setElevationDegrees(90.0F);
-    return;
-  }
-  camera.setProjectiveFOVdeg(static_cast<float>(radToDeg(kFieldOfView)));
-  const double narrowest = std::atan(std::tan(0.5 * kFieldOfView) * std::min(1.0, aspect));
-  camera.setZoomDistance(static_cast<float>(kBorder * 0.5 * size.norm() / std::sin(narrowest)));
-  camera.setAzimuthDegrees(static_cast<float>(radToDeg(options.azimuth)));
-  camera.setElevationDegrees(static_cast<float>(radToDeg(options.elevation)));
+  camera.setProjectiveFOVdeg(static_cast<float>(radToDeg(field_of_view)));
+  camera.setZoomDistance(static_cast<float>(distance));
+  camera.setAzimuthDegrees(is_top ? -90.0F : static_cast<float>(radToDeg(options.azimuth)));
+  camera.setElevationDegrees(is_top ? 90.0F : static_cast<float>(radToDeg(options.elevation)));
+  return distance;
 }
 
 mrpt::img::CImage draw(mrpt::opengl::COpenGLScene& scene, const Eigen::AlignedBox3d& bounds,
                        const RenderOptions& options) {
   const auto viewport = scene.getViewport();
   viewport->setCustomBackgroundColor({1.0F, 1.0F, 1.0F});
-  viewport->setViewportClipDistances(0.05F,
-                                     static_cast<float>(100.0 + 10.0 * bounds.sizes().norm()));
   // Walls all around are lit alike: much ambient light, a little from above.
   viewport->lightParameters().ambient = {0.6F, 0.6F, 0.6F, 1.0F};
   viewport->lightParameters().diffuse = {0.4F, 0.4F, 0.4F, 1.0F};
   viewport->lightParameters().specular = {0.0F, 0.0F, 0.0F, 1.0F};
   mrpt::opengl::CFBORender renderer(static_cast<unsigned>(options.width),
                                     static_cast<unsigned>(options.height));
-  aim(options, bounds, renderer.getCamera(scene));
+  const double distance = aim(options, bounds, renderer.getCamera(scene));
+  const double radius = std::max(1.0, bounds.sizes().norm());
+  viewport->setViewportClipDistances(static_cast<float>(std::max(0.05, distance - radius)),
+                                     static_cast<float>(distance + radius));
   mrpt::img::CImage image;
   renderer.render_RGB(scene, image);
   return image;
