@@ -12,9 +12,12 @@ float sampleVariance(const OrientedCloud& cloud, std::size_t sample,
 }
 
 LocalMap::LocalMap(double spacing, const RegistrationParams& params)
-    : systematic_noise_ratio_(params.systematic_noise_ratio),
-      fine_(params.surfel_size_ratio * spacing, params.normal_gate),
-      coarse_(params.coarse_ratio * params.surfel_size_ratio * spacing, params.normal_gate) {}
+    : systematic_noise_ratio_(params.systematic_noise_ratio) {
+  double voxel_size = params.surfel_size_ratio * spacing;
+  for (int level = 0; level < params.levels; ++level, voxel_size *= params.level_ratio) {
+    levels_.emplace_back(voxel_size, params.normal_gate);
+  }
+}
 
 void LocalMap::insert(const ScanFeatures& scan, const Eigen::Isometry3d& map_from_body,
                       const std::vector<int>& landmark_of_plane) {
@@ -26,8 +29,7 @@ void LocalMap::insert(const ScanFeatures& scan, const Eigen::Isometry3d& map_fro
     const float variance = sampleVariance(cloud, i, systematic_noise_ratio_);
     const int label = scan.primitives_in_body.labels[i];
     const int landmark = label < 0 ? -1 : landmark_of_plane[static_cast<std::size_t>(label)];
-    fine_.insert(point, normal, variance, landmark);
-    coarse_.insert(point, normal, variance, landmark);
+    for (SurfelMap& level : levels_) level.insert(point, normal, variance, landmark);
   }
 }
 

@@ -7,6 +7,7 @@
 #include "registration/normal_space_sampling.h"
 
 #include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
 
 #include <algorithm>
 #include <cmath>
@@ -67,7 +68,7 @@ class Matcher {
 
   MatchResult run() {
     MatchResult result;
-    iterate(map_.coarse(), 1);
+    for (std::size_t level = firstLevel(); level > 0; --level) iterate(map_.levels()[level], 1);
     result.converged = iterate(map_.fine(), params_.max_iterations);
     associatePlanes();
     if (hasLandmarks()) result.converged = iterate(map_.fine(), params_.max_iterations);
@@ -88,6 +89,26 @@ class Matcher {
       ++plane.samples;
     }
     for (ScanPlane& plane : planes_) plane.factor = plane.moments_in_body.factor();
+  }
+
+  /// The finest level on which the points should find their surfels, as far as the prior knows the
+  /// pose.
+  std::size_t firstLevel() const {
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> rotation(
+        prior_.information.topLeftCorner<3, 3>());
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> translation(
+        prior_.information.bottomRightCorner<3, 3>());
+    double squared_ranges = 0.0;
+    for (const ScanPoint& p : points_) squared_ranges += p.point_in_body.squaredNorm();
+    squared_ranges /= std::max<double>(1.0, static_cast<double>(points_.size()));
+    const double sigma =
+        std::sqrt(squared_ranges / rotation.eigenvalues()[0] + 1.0 / translation.eigenvalues()[0]);
+    std::size_t level = 0;
+    // A query reaches at least half a voxel; two sigmas shall be within it. Negated, so that an
+    // unknown pose (NaN or infinite) starts on the coarsest.
+    while (level + 1 < map_.levels().size() && !(0.25 * map_.levels()[level].voxelSize() > sigma))
+      ++level;
+    return level;
   }
 
   bool hasLandmarks() const {

@@ -15,8 +15,8 @@ namespace opp::mapping {
 /// pixels of a sample, but for the part (`systematic_noise_ratio`) that neighbouring pixels share.
 float sampleVariance(const OrientedCloud& cloud, std::size_t sample, double systematic_noise_ratio);
 
-/// What a scan is registered against: surfels of some keyframes at two resolutions and the plane
-/// landmarks.
+/// What a scan is registered against: surfels of some keyframes at several resolutions and the
+/// plane landmarks.
 class LocalMap {
  public:
   /// An empty map for samples about `spacing` [m] apart.
@@ -30,14 +30,14 @@ class LocalMap {
     landmark_planes_ = std::move(planes_in_map);
   }
 
-  const SurfelMap& fine() const { return fine_; }
-  const SurfelMap& coarse() const { return coarse_; }
+  const SurfelMap& fine() const { return levels_.front(); }
+  /// Fine to coarse, at least one.
+  const std::vector<SurfelMap>& levels() const { return levels_; }
   const std::vector<Plane>& landmarkPlanes() const { return landmark_planes_; }
 
  private:
   double systematic_noise_ratio_;
-  SurfelMap fine_;
-  SurfelMap coarse_;
+  std::vector<SurfelMap> levels_;
   std::vector<Plane> landmark_planes_;
 };
 

@@ -29,8 +29,9 @@ struct PlaneAssociation {
 struct MatchResult {
   Eigen::Isometry3d map_from_body = Eigen::Isometry3d::Identity();
   Matrix6d information =
-      Matrix6d::Zero();                  ///< of (ω, v) from scan and map alone, without the prior
-  Matrix6d point_information = Matrix6d::Zero();  ///< the part of `information` that is not from planes
+      Matrix6d::Zero();  ///< of (ω, v) from scan and map alone, without the prior
+  Matrix6d point_information =
+      Matrix6d::Zero();                  ///< the part of `information` that is not from planes
   std::vector<PlaneAssociation> planes;  ///< in order of scan planes
   double overlap = 0.0;  ///< share of the scan's points that agree with the map, 0–1
   double rms = 0.0;      ///< distance of the agreeing points to their surfels [m]
@@ -39,11 +40,11 @@ struct MatchResult {
 
 /// Registers a scan against a local map, starting at the prior's pose.
 ///
-/// Three stages, each a robust Gauss–Newton iteration (Cauchy kernel, annealed): points against
-/// coarse surfels, points against fine surfels, then plane landmarks through the moments of the
-/// scan's planes (four numbers a plane for all its samples, exact) together with the points that
-/// are on no such plane. An empty scan or map gives overlap 0 and the prior's pose. Deterministic.
-/// Cost: O(max_points + samples + planes) per step.
+/// Stages, each a robust Gauss–Newton iteration (Cauchy kernel, annealed): points against surfels
+/// from a level that is as coarse as the prior is uncertain down to the finest, then plane
+/// landmarks through the moments of the scan's planes (four numbers a plane for all its samples,
+/// exact) together with the points that are on no such plane. An empty scan or map gives overlap 0
+/// and the prior's pose. Deterministic. Cost: O(max_points + samples + planes) per step.
 MatchResult matchScan(const ScanFeatures& scan, const LocalMap& map, const PosePrior& prior,
                       const RegistrationParams& params);
 

@@ -15,7 +15,8 @@ struct RegistrationParams {
   static constexpr std::string_view kSection = "registration";
   int max_points = 2500;
   double surfel_size_ratio = 2.5;
-  double coarse_ratio = 4.0;
+  double level_ratio = 4.0;
+  int levels = 3;
   double normal_gate = degToRad(35.0);
   double systematic_noise_ratio = 0.3;
   double kernel_width = 2.5;
@@ -31,8 +32,10 @@ struct RegistrationParams {
                           "samples of a scan used as points, balanced over their normals"});
     f(p.surfel_size_ratio, Field{"surfel_size_ratio", "", 1.0, 20.0,
                                  "edge of a surfel's voxel over the sample spacing"});
-    f(p.coarse_ratio,
-      Field{"coarse_ratio", "", 1.0, 20.0, "edge of a coarse voxel over that of a fine one"});
+    f(p.level_ratio,
+      Field{"level_ratio", "", 1.5, 20.0, "edge of a voxel over that of the next finer level"});
+    f(p.levels, Field{"levels", "", 1, 8,
+                      "levels of voxels; the less is known of a pose, the coarser the first"});
     f(p.normal_gate, Field{"normal_gate", "rad", 0.01, 1.57,
                            "point and surfel match if their normals differ less"});
     f(p.systematic_noise_ratio,
