@@ -36,6 +36,10 @@ class Geos {
   Geos(const Geos&) = delete;
   Geos& operator=(const Geos&) = delete;
 
+  GEOSContextHandle_t handle() const { return handle_; }  ///< for calls that have no method here
+  /// Takes ownership. \throws std::runtime_error with GEOS' message if `geometry` is null.
+  Geometry checked(GEOSGeometry* geometry) const;
+
   Geometry polygon(const Polygon2d& polygon) const;
   Geometry collection(std::vector<Geometry> parts) const;
   Geometry unionOf(const Geometry& parts) const;
@@ -46,7 +50,6 @@ class Geos {
   std::vector<Polygon2d> polygonsOf(const Geometry& geometry) const;
 
  private:
-  Geometry checked(GEOSGeometry* geometry) const;
   Ring2d ringOf(const GEOSGeometry* ring, bool counter_clockwise) const;
   GEOSGeometry* linearRing(const Ring2d& ring) const;
 

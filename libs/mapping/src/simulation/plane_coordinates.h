@@ -5,7 +5,7 @@
 #include "opp/geometry/plane.h"
 #include "opp/mapping/simulation/world.h"
 
-#include "geos.h"
+#include "planar/geos.h"
 
 #include <Eigen/Core>
 

@@ -30,10 +30,9 @@ std::vector<Triangle> triangulated(const Geos& geos, const Face& face) {
   }
   const PlaneCoordinates coordinates(face.plane);
   const auto polygon = geos.polygon(coordinates.polygon(face));
-  const auto triangles =
-      geos.own(GEOSConstrainedDelaunayTriangulation_r(geos.handle(), polygon.get()));
+  const auto triangles = geos.triangulate(polygon);
   std::vector<Triangle> result;
-  for (const Polygon2d& triangle : geos.polygons(triangles.get())) {
+  for (const Polygon2d& triangle : geos.polygonsOf(triangles)) {
     result.push_back({coordinates.point(triangle.outer.at(0)),
                       coordinates.point(triangle.outer.at(1)),
                       coordinates.point(triangle.outer.at(2))});

@@ -23,7 +23,7 @@ Eigen::Vector3d commonPoint(const SeenPlane& a, const SeenPlane& b, const SeenPl
 bool touches(const Geos& geos, const SeenPlane& plane, const Eigen::Vector3d& point) {
   const auto h = geos.handle();
   const Eigen::Vector2d uv = plane.coordinates().uv(point);
-  const auto place = geos.own(GEOSGeom_createPointFromXY_r(h, uv.x(), uv.y()));
+  const auto place = geos.checked(GEOSGeom_createPointFromXY_r(h, uv.x(), uv.y()));
   double distance = 0.0;
   GEOSDistance_r(h, plane.outline.get(), place.get(), &distance);
   return distance <= kTouch;

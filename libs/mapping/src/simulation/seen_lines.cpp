@@ -24,18 +24,18 @@ std::vector<Interval> touching(const Geos& geos, const SeenPlane& plane, const S
     const Eigen::Vector2d uv = coordinates.uv(seam.origin + range[k] * seam.direction);
     GEOSCoordSeq_setXY_r(h, ends, k, uv.x(), uv.y());
   }
-  const auto line = geos.own(GEOSGeom_createLineString_r(h, ends));
-  const auto grown = geos.own(GEOSBufferWithStyle_r(h, plane.outline.get(), kTouch, 1,
-                                                    GEOSBUF_CAP_SQUARE, GEOSBUF_JOIN_MITRE, 2.0));
-  const auto common = geos.own(GEOSIntersection_r(h, line.get(), grown.get()));
+  const auto line = geos.checked(GEOSGeom_createLineString_r(h, ends));
+  const auto grown = geos.checked(GEOSBufferWithStyle_r(
+      h, plane.outline.get(), kTouch, 1, GEOSBUF_CAP_SQUARE, GEOSBUF_JOIN_MITRE, 2.0));
+  const auto common = geos.checked(GEOSIntersection_r(h, line.get(), grown.get()));
   std::vector<Interval> result;
   for (int k = 0; k < GEOSGetNumGeometries_r(h, common.get()); ++k) {
     const GEOSGeometry* part = GEOSGetGeometryN_r(h, common.get(), k);
     if (GEOSGeomTypeId_r(h, part) != GEOS_LINESTRING || GEOSisEmpty_r(h, part) != 0) continue;
     Interval interval{};
     for (int end = 0; end < 2; ++end) {
-      const auto point =
-          geos.own(end == 0 ? GEOSGeomGetStartPoint_r(h, part) : GEOSGeomGetEndPoint_r(h, part));
+      const auto point = geos.checked(end == 0 ? GEOSGeomGetStartPoint_r(h, part)
+                                               : GEOSGeomGetEndPoint_r(h, part));
       Eigen::Vector2d uv;
       GEOSGeomGetX_r(h, point.get(), &uv.x());
       GEOSGeomGetY_r(h, point.get(), &uv.y());

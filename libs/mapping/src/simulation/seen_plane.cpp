@@ -71,7 +71,7 @@ std::vector<SeenPlane> seenPlanes(const Geos& geos, const World& world, const Se
       for (const auto& vertex : faceOf(world, numbers[i]).outer) plane.box.extend(vertex);
     }
     if (plane.pixels < static_cast<std::uint64_t>(params.min_pixels)) continue;
-    plane.outline = geos.merged(std::move(outlines));
+    plane.outline = geos.unionOf(geos.collection(std::move(outlines)));
     result.push_back(std::move(plane));
   }
   return result;
@@ -85,14 +85,14 @@ std::vector<Polygon2d> seenPolygons(const Geos& geos, const SeenPlane& plane,
   for (const Polygon2d& run : runs) cells.push_back(geos.polygon(run));
   const auto h = geos.handle();
   const auto buffered = [&](const Geos::Geometry& shape, double width) {
-    return geos.own(GEOSBufferWithStyle_r(h, shape.get(), width, 1, GEOSBUF_CAP_SQUARE,
-                                          GEOSBUF_JOIN_MITRE, 2.0));
+    return geos.checked(GEOSBufferWithStyle_r(h, shape.get(), width, 1, GEOSBUF_CAP_SQUARE,
+                                              GEOSBUF_JOIN_MITRE, 2.0));
   };
-  const auto seen = geos.merged(std::move(cells));
+  const auto seen = geos.unionOf(geos.collection(std::move(cells)));
   const auto closed = buffered(buffered(seen, params.closing), -params.closing);
-  const auto smooth = geos.own(GEOSTopologyPreserveSimplify_r(h, closed.get(), params.cell));
-  const auto clipped = geos.own(GEOSIntersection_r(h, smooth.get(), plane.outline.get()));
-  std::vector<Polygon2d> result = geos.polygons(clipped.get());
+  const auto smooth = geos.checked(GEOSTopologyPreserveSimplify_r(h, closed.get(), params.cell));
+  const auto clipped = geos.checked(GEOSIntersection_r(h, smooth.get(), plane.outline.get()));
+  std::vector<Polygon2d> result = geos.polygonsOf(clipped);
   return result;
 }
 
