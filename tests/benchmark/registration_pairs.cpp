@@ -1,0 +1,231 @@
+// SPDX-FileCopyrightText: 2026 The opp-mapping authors
+// SPDX-License-Identifier: BSD-3-Clause
+// Aligns pairs of a rawlog's scans without initial guess and compares with the true poses: recall
+// and false accepts against overlap. Detection is done once a scan, before, and is not timed.
+#include "opp/mapping/evaluation/time_association.h"
+#include "opp/mapping/io/tum_trajectory.h"
+#include "opp/mapping/pipeline/feature_stream.h"
+#include "opp/mapping/registration/align_globally.h"
+
+#include "common/flags.h"
+#include "common/run_main.h"
+#include "registration/voxel_index.h"
+
+#include <Eigen/Eigenvalues>
+
+#include <ctime>
+#include <fstream>
+#include <iomanip>
+#include <iostream>
+
+namespace {
+
+using namespace opp;
+using namespace opp::mapping;
+
+struct Params {
+  PrimitiveParams primitives;
+  GlobalAlignmentParams alignment;
+  AssociationParams association;
+
+  template <typename Self, typename F>
+  static void visitSections(Self&& p, F&& f) {
+    PrimitiveParams::visitSections(p.primitives, f);
+    f(p.alignment);
+    f(p.association);
+  }
+};
+
+struct Frame {
+  ScanFeatures features;
+  Eigen::Isometry3d map_from_body = Eigen::Isometry3d::Identity();
+};
+
+struct PairResult {
+  std::size_t target = 0, source = 0;
+  double overlap = 0.0;  ///< of the true pose
+  bool six_dof = false;  ///< true planes of three independent normals are shared
+  GlobalAlignment alignment;
+  double angle = 0.0;         ///< error [rad]
+  double distance = 0.0;      ///< error [m]
+  double milliseconds = 0.0;  ///< CPU time
+
+  bool accepted() const { return alignment.outcome == AlignmentOutcome::kAligned; }
+  bool good() const { return accepted() && angle <= degToRad(1.0) && distance <= 0.03; }
+  bool wrong() const { return accepted() && (angle > degToRad(5.0) || distance > 0.10); }
+};
+
+std::vector<Frame> readFrames(const std::string& rawlog, const std::string& poses,
+                              std::size_t every, const Params& params) {
+  const Trajectory truth = readTumTrajectory(std::filesystem::path(poses));
+  RawlogOptions options;
+  options.every = every;
+  RawlogReader reader(rawlog, options);
+  FeatureStream stream(reader, params.primitives, 0);
+  std::vector<Frame> frames;
+  while (auto frame = stream.next()) {
+    const auto pose = poseAt(truth, frame->features.timestamp, params.association);
+    if (pose) frames.push_back({std::move(frame->features), *pose});
+  }
+  return frames;
+}
+
+/// Share of the smaller scan's samples that have one of the other scan in reach that faces the same
+/// way, and whether planes with three independent normals are among what they share.
+void judgeTruth(const Frame& target, const Frame& source, PairResult& result) {
+  const OrientedCloud& t = target.features.cloud_in_body;
+  const OrientedCloud& s = source.features.cloud_in_body;
+  const VoxelIndex index(t, 2.0 * t.spacing);
+  const Eigen::Isometry3f pose =
+      (target.map_from_body.inverse() * source.map_from_body).cast<float>();
+  Eigen::Matrix3d normals = Eigen::Matrix3d::Zero();
+  const std::vector<int>& target_labels = target.features.primitives_in_body.labels;
+  const std::vector<int>& source_labels = source.features.primitives_in_body.labels;
+  std::map<std::pair<int, int>, int> shared;
+  double matched = 0.0;
+  for (std::size_t i = 0; i < s.size(); ++i) {
+    const std::int32_t k = index.near(pose * s.points[i], pose.linear() * s.normals[i], 0.7F);
+    if (k < 0) continue;
+    matched += 1.0;
+    const int p = target_labels[static_cast<std::size_t>(k)], q = source_labels[i];
+    if (p >= 0 && q >= 0) ++shared[{p, q}];
+  }
+  result.overlap = matched / static_cast<double>(std::min(s.size(), t.size()));
+  for (const auto& [planes, count] : shared) {
+    const Eigen::Vector3d n =
+        target.features.primitives_in_body.planes[static_cast<std::size_t>(planes.first)]
+            .plane.normal();
+    if (count >= 30) normals += n * n.transpose();
+  }
+  // Normals 30° off the plane of the others count as independent: sin² 30° = 0.25.
+  result.six_dof = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(normals).eigenvalues()[0] > 0.25;
+}
+
+PairResult alignPair(const std::vector<Frame>& frames, std::size_t target, std::size_t source,
+                     const Params& params) {
+  PairResult result;
+  result.target = target;
+  result.source = source;
+  judgeTruth(frames[target], frames[source], result);
+  const std::clock_t start = std::clock();
+  result.alignment =
+      alignGlobally(frames[target].features, frames[source].features, params.alignment);
+  result.milliseconds = 1e3 * static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
+  const Eigen::Isometry3d truth =
+      frames[target].map_from_body.inverse() * frames[source].map_from_body;
+  // For pairs that are not accepted: the error of the best hypothesis, to see what is missing.
+  if (result.alignment.hypotheses.empty()) return result;
+  const Vector6d error = difference(truth, result.alignment.hypotheses.front().target_from_source);
+  result.angle = error.head<3>().norm();
+  result.distance = error.tail<3>().norm();
+  return result;
+}
+
+/// Position of the frame with that index in the rawlog.
+std::size_t positionOf(std::size_t index, const std::vector<Frame>& frames) {
+  const auto found = std::find_if(frames.begin(), frames.end(), [index](const Frame& f) {
+    return f.features.scan_index == index;
+  });
+  if (found == frames.end()) {
+    throw std::runtime_error("no frame " + std::to_string(index) + " with a true pose");
+  }
+  return static_cast<std::size_t>(found - frames.begin());
+}
+
+std::vector<std::array<std::size_t, 2>> pairsOf(const std::string& file,
+                                                const std::vector<Frame>& frames) {
+  std::vector<std::array<std::size_t, 2>> pairs;
+  if (file.empty()) {
+    for (std::size_t i = 0; i < frames.size(); ++i) {
+      for (std::size_t j = i + 1; j < frames.size(); ++j) pairs.push_back({i, j});
+    }
+    return pairs;
+  }
+  std::ifstream stream(file);
+  if (!stream) throw std::runtime_error("cannot read " + file);
+  std::size_t i = 0, j = 0;
+  double overlap = 0.0;
+  while (stream >> i >> j >> overlap) {
+    pairs.push_back({positionOf(i, frames), positionOf(j, frames)});
+  }
+  return pairs;
+}
+
+void writeCsv(const std::string& file, const std::vector<Frame>& frames,
+              const std::vector<PairResult>& results) {
+  std::ofstream csv(file);
+  csv << "target,source,overlap,six_dof,outcome,dof,angle_deg,distance_m,score,conflict,"
+         "runner_up,corners,ms\n";
+  for (const PairResult& r : results) {
+    const GlobalAlignment& a = r.alignment;
+    csv << frames[r.target].features.scan_index << ',' << frames[r.source].features.scan_index
+        << ',' << r.overlap << ',' << r.six_dof << ',' << static_cast<int>(a.outcome) << ','
+        << a.observed_dof << ',' << radToDeg(r.angle) << ',' << r.distance << ','
+        << (a.hypotheses.empty() ? 0.0 : a.hypotheses[0].score) << ','
+        << (a.hypotheses.empty() ? 0.0 : a.hypotheses[0].conflict) << ',' << a.runner_up_ratio
+        << ',' << a.corner_matches.size() << ',' << r.milliseconds << '\n';
+  }
+}
+
+template <typename Filter>
+void printRow(const std::string& name, const std::vector<PairResult>& results, Filter filter) {
+  int count = 0, good = 0, accepted = 0, wrong = 0;
+  std::array<int, 4> outcomes{};
+  std::vector<double> times;
+  for (const PairResult& r : results) {
+    if (!filter(r)) continue;
+    ++count;
+    good += r.good();
+    accepted += r.accepted();
+    wrong += r.wrong();
+    ++outcomes[static_cast<std::size_t>(r.alignment.outcome)];
+    times.push_back(r.milliseconds);
+  }
+  if (count == 0) return;
+  std::sort(times.begin(), times.end());
+  std::cout << std::setw(22) << name << std::setw(7) << count << std::setw(7) << good
+            << std::setw(8) << std::fixed << std::setprecision(1) << 100.0 * good / count
+            << std::setw(9) << accepted << std::setw(7) << wrong << std::setw(10) << outcomes[1]
+            << std::setw(13) << outcomes[2] << std::setw(11) << outcomes[3] << std::setw(8)
+            << times[times.size() / 2] << std::setw(8) << times.back() << '\n';
+}
+
+void run(apps::CommandLine& line) {
+  TCLAP::ValueArg<std::string> rawlog("i", "input", "Rawlog", true, "", "FILE.rawlog", line);
+  TCLAP::ValueArg<std::string> gt("", "gt", "True poses", true, "", "FILE.tum", line);
+  TCLAP::ValueArg<int> every("", "every", "Each K-th frame", false, 1, "K", line);
+  TCLAP::ValueArg<std::string> pairs("", "pairs", "Pairs of frames; default: all", false, "",
+                                     "FILE.txt", line);
+  TCLAP::ValueArg<std::string> csv("", "csv", "One line a pair", false, "", "FILE.csv", line);
+  apps::ParameterFlags parameters(line);
+  line.parse();
+  Params params;
+  parameters.applyTo(params);
+  const auto frames = readFrames(rawlog.getValue(), gt.getValue(),
+                                 static_cast<std::size_t>(every.getValue()), params);
+  std::vector<PairResult> results;
+  for (const auto& [i, j] : pairsOf(pairs.getValue(), frames)) {
+    results.push_back(alignPair(frames, i, j, params));
+  }
+  if (csv.isSet()) writeCsv(csv.getValue(), frames, results);
+  std::cout
+      << "               overlap  pairs   good  recall accepted  wrong ambiguous insufficient "
+         "no-overlap  ms p50  ms max\n";
+  for (const double low : {0.0, 0.3, 0.5, 0.7}) {
+    const double high = low < 0.3 ? 0.3 : low < 0.5 ? 0.5 : low < 0.7 ? 0.7 : 2.0;
+    std::ostringstream name;
+    name << low << " - " << std::min(high, 1.0);
+    printRow(name.str(), results,
+             [&](const PairResult& r) { return r.overlap >= low && r.overlap < high; });
+  }
+  printRow(">= 0.3", results, [](const PairResult& r) { return r.overlap >= 0.3; });
+  printRow(">= 0.3 and 6 dof", results,
+           [](const PairResult& r) { return r.overlap >= 0.3 && r.six_dof; });
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  return apps::runMain(argc, argv, "registration_pairs",
+                       "Aligns pairs of scans and compares with the truth.", run);
+}
