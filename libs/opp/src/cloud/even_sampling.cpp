@@ -41,6 +41,9 @@ std::size_t countCells(const std::vector<Eigen::Vector3f>& points, const Extent&
   return table.size();
 }
 
+/// Edge of a cell of the sampler over the spacing: few cells to look at, few samples in each.
+constexpr double kEdgeRatio = 2.5;
+
 /// Grows samples one entry at a time.
 class Sampler {
  public:
@@ -49,94 +52,103 @@ class Sampler {
         cos_merge_(static_cast<float>(std::cos(params.merge_angle))),
         gate_(params.gate),
         tilt_(std::tan(params.normal_error) * spacing),
-        // A ball of radius `spacing` touches at most two cells of twice that edge per axis.
-        table_(extent.low, 2.0 * spacing, static_cast<std::size_t>(params.target_samples)) {}
+        table_(extent.low, kEdgeRatio * spacing, static_cast<std::size_t>(params.target_samples)) {}
 
   void add(const Eigen::Vector3f& point, const Eigen::Vector3f& normal, float sigma, float weight) {
-    const int sample = nearest(point, normal, sigma, weight);
-    if (sample >= 0) {
-      samples_[static_cast<std::size_t>(sample)].add(point, normal, sigma, weight);
-    } else {
-      insert(point, normal, sigma, weight);
-    }
+    int sample = nearest(point, normal, sigma, weight);
+    if (sample < 0) sample = insert(point, normal);
+    const auto k = static_cast<std::size_t>(sample);
+    const auto w = static_cast<double>(weight);
+    sums_[k].offset += w * (point - seeds_[k].point).cast<double>();
+    sums_[k].normal += w * normal.cast<double>();
+    sums_[k].variance += w * static_cast<double>(sigma * sigma);
+    sums_[k].weight += w;
   }
 
   void write(OrientedCloud& out) const {
-    for (const Sample& s : samples_) {
-      const Eigen::Vector3d point = s.seed.cast<double>() + s.offset_sum / s.weight;
-      const Eigen::Vector3d normal = s.normal_sum.normalized();
+    for (std::size_t i = 0; i < seeds_.size(); ++i) {
+      const Sums& s = sums_[i];
+      const Eigen::Vector3d point = seeds_[i].point.cast<double>() + s.offset / s.weight;
+      const Eigen::Vector3d normal = s.normal.normalized();
       // A mean of normals that all point to the viewpoint may point away where the view is grazing.
       const bool away = normal.dot(out.viewpoint.cast<double>() - point) < 0.0;
       out.points.push_back(point.cast<float>());
       out.normals.push_back((away ? Eigen::Vector3d(-normal) : normal).cast<float>());
-      out.sigmas.push_back(static_cast<float>(std::sqrt(s.variance_sum / s.weight)));
+      out.sigmas.push_back(static_cast<float>(std::sqrt(s.variance / s.weight)));
       out.weights.push_back(static_cast<float>(s.weight));
     }
   }
 
  private:
-  struct Sample {
-    Eigen::Vector3f seed;    ///< its first entry: fixed, so that the cell it is found in is too
-    Eigen::Vector3f normal;  ///< of its first entry
-    Eigen::Vector3d offset_sum = Eigen::Vector3d::Zero();  ///< weighted, from the seed
-    Eigen::Vector3d normal_sum = Eigen::Vector3d::Zero();
-    double variance_sum = 0.0;
-    double weight = 0.0;
-    int next = -1;  ///< in the same cell
-
-    void add(const Eigen::Vector3f& point, const Eigen::Vector3f& n, float sigma, float w) {
-      offset_sum += static_cast<double>(w) * (point - seed).cast<double>();
-      normal_sum += static_cast<double>(w) * n.cast<double>();
-      variance_sum += static_cast<double>(w * sigma * sigma);
-      weight += static_cast<double>(w);
-    }
+  /// First entry of a sample: fixed, so that the cell in which it is found is too.
+  struct Seed {
+    Eigen::Vector3f point;
+    Eigen::Vector3f normal;
+    int next;  ///< in the same cell; −1: none
   };
 
+  /// Weighted sums over the entries of a sample.
+  struct Sums {
+    Eigen::Vector3d offset = Eigen::Vector3d::Zero();  ///< from the seed
+    Eigen::Vector3d normal = Eigen::Vector3d::Zero();
+    double variance = 0.0;
+    double weight = 0.0;
+  };
+
+  /// The sample that an entry joins; −1: none.
   int nearest(const Eigen::Vector3f& point, const Eigen::Vector3f& normal, float sigma,
               float weight) const {
-    const Eigen::Vector3d low = point.cast<double>() - Eigen::Vector3d::Constant(spacing_);
-    const CellTable::Cell corner = table_.cellOf(low);
+    const Eigen::Vector3d reach = Eigen::Vector3d::Constant(spacing_);
+    const CellTable::Cell low = table_.cellOf(point.cast<double>() - reach);
+    const CellTable::Cell high = table_.cellOf(point.cast<double>() + reach);
     auto best_distance = static_cast<float>(spacing_ * spacing_);
     int best = -1;
-    for (int k = 0; k < 8; ++k) {
-      const CellTable::Cell cell = corner + CellTable::Cell(k & 1, (k >> 1) & 1, k >> 2);
-      for (int i = table_.find(cell); i >= 0; i = samples_[static_cast<std::size_t>(i)].next) {
-        const Sample& sample = samples_[static_cast<std::size_t>(i)];
-        // Along the surface: noise across it must not make samples.
-        const Eigen::Vector3f step = point - sample.seed;
-        const float across = sample.normal.dot(step);
-        const float distance = step.squaredNorm() - across * across;
-        if (distance < best_distance && sameSurface(sample, point, normal, sigma, weight)) {
-          best_distance = distance;
-          best = i;
+    CellTable::Cell cell;
+    for (cell.z() = low.z(); cell.z() <= high.z(); ++cell.z()) {
+      for (cell.y() = low.y(); cell.y() <= high.y(); ++cell.y()) {
+        for (cell.x() = low.x(); cell.x() <= high.x(); ++cell.x()) {
+          for (int i = table_.find(cell); i >= 0; i = seeds_[static_cast<std::size_t>(i)].next) {
+            const float distance = distanceAlong(i, point);
+            if (distance >= best_distance || !sameSurface(i, point, normal, sigma, weight))
+              continue;
+            best_distance = distance;
+            best = i;
+          }
         }
       }
     }
     return best;
   }
 
-  bool sameSurface(const Sample& sample, const Eigen::Vector3f& point,
-                   const Eigen::Vector3f& normal, float sigma, float weight) const {
-    if (sample.normal.dot(normal) < cos_merge_) return false;
+  /// Squared distance from a seed along its surface: noise across it must not make samples.
+  float distanceAlong(int sample, const Eigen::Vector3f& point) const {
+    const Seed& seed = seeds_[static_cast<std::size_t>(sample)];
+    const Eigen::Vector3f step = point - seed.point;
+    const float across = seed.normal.dot(step);
+    return step.squaredNorm() - across * across;
+  }
+
+  bool sameSurface(int sample, const Eigen::Vector3f& point, const Eigen::Vector3f& normal,
+                   float sigma, float weight) const {
+    const Seed& seed = seeds_[static_cast<std::size_t>(sample)];
+    if (seed.normal.dot(normal) < cos_merge_) return false;
+    const Sums& sums = sums_[static_cast<std::size_t>(sample)];
     const Eigen::Vector3d mean_to_point =
-        (point - sample.seed).cast<double>() - sample.offset_sum / sample.weight;
-    const Eigen::Vector3d direction = (sample.normal + normal).cast<double>().normalized();
-    const double variance = static_cast<double>(sigma * sigma / weight) +
-                            sample.variance_sum / (sample.weight * sample.weight);
+        (point - seed.point).cast<double>() - sums.offset / sums.weight;
+    const Eigen::Vector3d direction = (seed.normal + normal).cast<double>().normalized();
+    const double variance =
+        static_cast<double>(sigma * sigma / weight) + sums.variance / (sums.weight * sums.weight);
     return std::abs(direction.dot(mean_to_point)) <= gate_ * std::sqrt(variance) + tilt_;
   }
 
-  void insert(const Eigen::Vector3f& point, const Eigen::Vector3f& normal, float sigma,
-              float weight) {
-    const int index = static_cast<int>(samples_.size());
+  int insert(const Eigen::Vector3f& point, const Eigen::Vector3f& normal) {
+    const int index = static_cast<int>(seeds_.size());
     const CellTable::Cell cell = table_.cellOf(point.cast<double>());
-    Sample sample;
-    sample.seed = point;
-    sample.normal = normal;
-    sample.next = table_.findOrInsert(cell, index);
-    if (sample.next >= 0) table_.replace(cell, index);
-    sample.add(point, normal, sigma, weight);
-    samples_.push_back(sample);
+    const int next = table_.findOrInsert(cell, index);
+    if (next >= 0) table_.replace(cell, index);
+    seeds_.push_back({point, normal, next});
+    sums_.emplace_back();
+    return index;
   }
 
   double spacing_;
@@ -144,14 +156,16 @@ class Sampler {
   double gate_;
   double tilt_;
   CellTable table_;
-  std::vector<Sample> samples_;
+  std::vector<Seed> seeds_;
+  std::vector<Sums> sums_;
 };
 
 }  // namespace
 
 double spacingForCount(const std::vector<Eigen::Vector3f>& points, std::size_t target,
                        double minimum) {
-  constexpr int kMaxSteps = 12;  // each about squares the error away; 3 are usual
+  constexpr int kMaxSteps = 12;  // 3 are usual
+  constexpr double kTolerance = 0.05;
   const Extent extent = extentOf(points);
   const double floor = std::max(minimum, smallestCell(extent));
   const double wanted =
@@ -162,7 +176,7 @@ double spacingForCount(const std::vector<Eigen::Vector3f>& points, std::size_t t
     const auto count =
         static_cast<double>(countCells(points, extent, edge, static_cast<std::size_t>(wanted)));
     const double factor = std::sqrt(count / wanted);
-    if (std::abs(factor - 1.0) < 0.03 || (edge <= floor && factor < 1.0)) break;
+    if (std::abs(factor - 1.0) < kTolerance || (edge <= floor && factor < 1.0)) break;
     edge = std::max(floor, edge * factor);
   }
   return edge;

@@ -121,6 +121,7 @@ GridPatches makeGridPatches(const PointCloud& cloud, const SensorModel& sensor,
   grid.cols = (cloud.cols + shape.cols - 1) / shape.cols;
   grid.columns_wrap = cloud.columns_wrap;
   grid.patches.origin = cloud.viewpoint.cast<double>();
+  grid.patches.reserve(static_cast<std::size_t>(grid.rows) * static_cast<std::size_t>(grid.cols));
   for (int r = 0; r < grid.rows; ++r) {
     for (int c = 0; c < grid.cols; ++c) {
       const MomentSums sums = blockSums(cloud, gate, grid.patches.origin, r * shape.rows,

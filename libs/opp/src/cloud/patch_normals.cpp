@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cloud/patch_normals.h"
 
-#include <Eigen/Eigenvalues>
+#include "cloud/noisy_plane.h"
 
 #include <algorithm>
 #include <cmath>
@@ -26,44 +26,6 @@ Eigen::Matrix3d covarianceOf(const MomentSums& sums, const Eigen::Vector3d& mean
 double roundingSigma(const Eigen::Vector3d& point) {
   return static_cast<double>(std::numeric_limits<float>::epsilon()) *
          point.lpNorm<Eigen::Infinity>();
-}
-
-/// Unit normal and smaller tangential variance of points with covariance `covariance`, whose noise
-/// is `along` in the direction of the unit vector `ray` and `across` in the others. The normal n
-/// minimizes nᵀCn / nᵀΣn, Σ the noise's covariance. Plain least squares (Σ = I) would turn slanted
-/// surfaces toward the sensor by several degrees, because noise along the ray spreads the points
-/// in the plane as well.
-struct NoisyPlane {
-  Eigen::Vector3d normal;
-  Eigen::Vector3d narrow;  ///< unit tangent along which the points extend less
-  double width;            ///< their variance along it, without the noise [m²]
-};
-
-NoisyPlane fitNoisyPlane(const Eigen::Matrix3d& covariance, const Eigen::Vector3d& ray,
-                         double along, double across) {
-  const double squeeze = across / along;
-  const Eigen::Matrix3d whiten =
-      Eigen::Matrix3d::Identity() - (1.0 - squeeze) * ray * ray.transpose();
-  Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen;
-  eigen.computeDirect(whiten * covariance * whiten);
-  const double least = std::max(0.0, eigen.eigenvalues()[0]);
-  const Eigen::Vector3d normal = (whiten * eigen.eigenvectors().col(0)).normalized();
-  // C − λΣ has the normal in its kernel; its other eigenvalues are the widths of the surface.
-  const double stretch = 1.0 / (squeeze * squeeze) - 1.0;
-  const Eigen::Matrix3d surface =
-      covariance - least * (Eigen::Matrix3d::Identity() + stretch * ray * ray.transpose());
-  const double sum = surface.trace();
-  const double product = surface(0, 0) * surface(1, 1) - surface(0, 1) * surface(0, 1) +
-                         surface(0, 0) * surface(2, 2) - surface(0, 2) * surface(0, 2) +
-                         surface(1, 1) * surface(2, 2) - surface(1, 2) * surface(1, 2);
-  const double larger = 0.5 * (sum + std::sqrt(std::max(0.0, sum * sum - 4.0 * product)));
-  const double smaller = larger > 0.0 ? product / larger : 0.0;
-  // What is left without the narrow part is the wide direction times its transpose.
-  const Eigen::Matrix3d wide =
-      surface - smaller * (Eigen::Matrix3d::Identity() - normal * normal.transpose());
-  Eigen::Index column = 0;
-  wide.diagonal().maxCoeff(&column);
-  return {normal, normal.cross(wide.col(column)).normalized(), smaller};
 }
 
 /// The median of ratios of a measured to an expected variance as a factor of standard deviations,
@@ -93,17 +55,17 @@ PatchNormals::PatchNormals(const Patches& patches, Neighborhood neighborhood,
 std::vector<PatchNormal> PatchNormals::estimate() {
   std::vector<PatchNormal> result(patches_.size());
   measureNoise();
-  std::vector<int> pending(patches_.size());
-  std::iota(pending.begin(), pending.end(), 0);
-  std::vector<int> uncertain;
-  for (int radius = 1; radius <= params_.max_window_radius && !pending.empty(); ++radius) {
-    uncertain.clear();
-    for (const int patch : pending) {
-      if (choose(patch, radius, result[static_cast<std::size_t>(patch)]) == Verdict::kUncertain) {
-        uncertain.push_back(patch);
+  // Patches by the radius of the window they wait for.
+  std::vector<std::vector<int>> waiting(static_cast<std::size_t>(params_.max_window_radius) + 1);
+  waiting[1].resize(patches_.size());
+  std::iota(waiting[1].begin(), waiting[1].end(), 0);
+  for (int radius = 1; radius <= params_.max_window_radius; ++radius) {
+    for (const int patch : waiting[static_cast<std::size_t>(radius)]) {
+      const int next = choose(patch, radius, result[static_cast<std::size_t>(patch)]);
+      if (next > radius && next <= params_.max_window_radius) {
+        waiting[static_cast<std::size_t>(next)].push_back(patch);
       }
     }
-    pending.swap(uncertain);
   }
   return result;
 }
@@ -133,7 +95,12 @@ void PatchNormals::measureNoise() {
 
 double PatchNormals::spreadOf(int patch, const Eigen::Vector3d& normal) const {
   const auto k = static_cast<std::size_t>(patch);
-  return normal.dot(covarianceOf(patches_.sums[k], patches_.means[k]) * normal);
+  const MomentSums& s = patches_.sums[k];
+  const double x = normal.x(), y = normal.y(), z = normal.z();
+  const double square =
+      x * (x * s[4] + 2.0 * (y * s[5] + z * s[6])) + y * (y * s[7] + 2.0 * z * s[8]) + z * z * s[9];
+  const double mean = normal.dot(patches_.means[k]);
+  return square / s[0] - mean * mean;
 }
 
 WindowFit PatchNormals::fitWindow(const std::vector<int>& window) const {
@@ -158,16 +125,18 @@ WindowFit PatchNormals::fitWindow(const std::vector<int>& window) const {
   fit.normal = cos_incidence < 0.0 ? Eigen::Vector3d(-plane.normal) : plane.normal;
   fit.model_sigma = sensor_.sigmaAlongNormal(range, cos_incidence);
   const double rounding = roundingSigma(fit.mean + patches_.origin);
-  fit.sigma = std::hypot(noise_scale_ * fit.model_sigma, rounding);
-  fit.spread_sigma = std::hypot(spread_scale_ * fit.model_sigma, rounding);
+  fit.sigma = noise_scale_ * fit.model_sigma + rounding;
+  fit.spread_sigma = spread_scale_ * fit.model_sigma + rounding;
   // A surface whose normal turns by ±normal_error over the window's width w = √(12 variance)
   // deviates from its plane by normal_error·w/√180 (rms of a parabola).
   fit.bend = params_.normal_error * std::sqrt(plane.width / 15.0);
   const double between = betweenPatches(window, fit);
   const double noise = fit.sigma * fit.sigma;
   // Upper quantile of χ² by its normal approximation.
-  const double quantile = freedom + params_.gate * std::sqrt(2.0 * freedom);
-  fit.misfit = between / (noise * quantile + sums[0] * fit.bend * fit.bend);
+  const double deviation = std::sqrt(2.0 * freedom);
+  fit.misfit =
+      between / (noise * (freedom + params_.gate * deviation) + sums[0] * fit.bend * fit.bend);
+  fit.surprise = (between / noise - freedom) / deviation;
   fit.angle_variance = std::max(noise, between / freedom) / (sums[0] * plane.width);
   return fit;
 }
@@ -217,26 +186,45 @@ bool PatchNormals::fits(int patch, const WindowFit& plane) const {
   return spreadOf(patch, plane.normal) <= gate * plane.spread_sigma * plane.spread_sigma + bend;
 }
 
-PatchNormals::Verdict PatchNormals::choose(int patch, int radius, PatchNormal& result) {
+const WindowFit* PatchNormals::bestWindow(int patch, int radius) {
+  // A plain surface, which is most of a scan, needs no look at the shifted windows.
+  const WindowFit& own = fit(patch, radius);
+  if (own.flat() && own.surprise < 1.0 && fits(patch, own)) return &own;
   // Fitting the other windows overwrites `window_`, so the candidates are kept apart.
   neighborhood_(patch, radius, candidates_);
   const WindowFit* best = nullptr;
   for (const int center : candidates_) {
     const WindowFit& candidate = fit(center, radius);
-    if (!candidate.flat() || !fits(patch, candidate)) continue;
-    if (best == nullptr || candidate.misfit < best->misfit) best = &candidate;
+    if (!candidate.flat() || (best != nullptr && candidate.misfit >= best->misfit)) continue;
+    if (fits(patch, candidate)) best = &candidate;
   }
-  const WindowFit& own = fits_[static_cast<std::size_t>(patch)];
+  return best;
+}
+
+/// Writes the normal and returns 0, or returns the radius at which to try again; 0 also if none
+/// will do.
+int PatchNormals::choose(int patch, int radius, PatchNormal& result) {
+  const WindowFit* best = bestWindow(patch, radius);
   const double tolerance = params_.normal_error * params_.normal_error;
   if (best == nullptr) {
-    return own.angle_variance <= tolerance && !own.normal.isZero() ? Verdict::kEdge
-                                                                   : Verdict::kUncertain;
+    const WindowFit& own = fits_[static_cast<std::size_t>(patch)];
+    return own.found() && own.angle_variance <= tolerance ? 0 : radius + 1;
   }
-  if (best->angle_variance > tolerance) return Verdict::kUncertain;
+  if (best->angle_variance > tolerance) return sufficientRadius(*best, radius);
   const Eigen::Vector3d to_viewpoint = viewpoint_ - patches_.means[static_cast<std::size_t>(patch)];
   const bool away = best->normal.dot(to_viewpoint) < 0.0;
   result = {away ? Eigen::Vector3d(-best->normal) : best->normal, best->model_sigma};
-  return Verdict::kFound;
+  return 0;
+}
+
+/// The variance of a normal goes with the fourth power of its window's width: points and lever
+/// grow.
+int PatchNormals::sufficientRadius(const WindowFit& window, int radius) const {
+  const double tolerance = params_.normal_error * params_.normal_error;
+  const double growth = std::sqrt(std::sqrt(window.angle_variance / tolerance));
+  const double needed = 0.5 * (growth * (2 * radius + 1) - 1.0);
+  const double limit = params_.max_window_radius + 1;
+  return std::max(radius + 1, static_cast<int>(std::ceil(std::min(limit, needed))));
 }
 
 }  // namespace opp

@@ -20,9 +20,11 @@ struct WindowFit {
   double spread_sigma = 0.0;    ///< the same, as points within patches show it [m]
   double bend = 0.0;            ///< deviation that a tolerated curvature explains (rms) [m]
   double misfit = 0.0;          ///< of the patches' means, over what noise and bend explain
+  double surprise = 0.0;        ///< the same, in standard deviations above what noise alone gives
   double angle_variance = 0.0;  ///< of the normal, in its worse direction [rad²]
 
-  bool flat() const { return !normal.isZero() && misfit <= 1.0; }
+  bool found() const { return !normal.isZero(); }
+  bool flat() const { return found() && misfit <= 1.0; }
 };
 
 /// Normal of one patch; zero: none that could be trusted.
@@ -44,8 +46,6 @@ class PatchNormals {
   std::vector<PatchNormal> estimate();
 
  private:
-  enum class Verdict { kFound, kUncertain, kEdge };
-
   void measureNoise();
   const WindowFit& fit(int patch, int radius);
   WindowFit fitWindow(const std::vector<int>& window) const;
@@ -56,7 +56,9 @@ class PatchNormals {
   double spreadOf(int patch, const Eigen::Vector3d& normal) const;
   double betweenPatches(const std::vector<int>& window, const WindowFit& plane) const;
   bool fits(int patch, const WindowFit& plane) const;
-  Verdict choose(int patch, int radius, PatchNormal& result);
+  const WindowFit* bestWindow(int patch, int radius);
+  int choose(int patch, int radius, PatchNormal& result);
+  int sufficientRadius(const WindowFit& window, int radius) const;
 
   const Patches& patches_;
   Neighborhood neighborhood_;

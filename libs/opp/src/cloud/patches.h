@@ -36,6 +36,10 @@ struct Patches {
   std::vector<Eigen::Vector3d> means;                ///< relative to the origin
 
   std::size_t size() const { return sums.size(); }
+  void reserve(std::size_t count) {
+    sums.reserve(count);
+    means.reserve(count);
+  }
   void add(const MomentSums& patch_sums) {
     sums.push_back(patch_sums);
     means.emplace_back(patch_sums.segment<3>(1) / patch_sums[0]);

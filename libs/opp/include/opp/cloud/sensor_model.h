@@ -24,7 +24,8 @@ struct SensorModel {
 
   /// Standard deviation of a measured range [m].
   double sigma(double range) const {
-    return std::hypot(noise_constant, noise_quadratic * range * range);
+    const double growing = noise_quadratic * range * range;
+    return std::sqrt(noise_constant * noise_constant + growing * growing);
   }
 
   /// Standard deviation of the mean of `count` ≥ 1 neighbouring raw points of deviation `sigma`.
@@ -36,7 +37,8 @@ struct SensorModel {
   /// with range lies along the ray and counts with the cosine of the incidence angle; the constant
   /// part counts in every direction.
   double sigmaAlongNormal(double range, double cos_incidence) const {
-    return std::hypot(noise_constant, noise_quadratic * range * range * cos_incidence);
+    const double along_ray = noise_quadratic * range * range * cos_incidence;
+    return std::sqrt(noise_constant * noise_constant + along_ray * along_ray);
   }
 
   template <typename Self, typename F>

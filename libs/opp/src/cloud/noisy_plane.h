@@ -1,0 +1,24 @@
+// SPDX-FileCopyrightText: 2026 The opp-mapping authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+
+namespace opp {
+
+/// A plane fitted to points whose noise differs by direction.
+struct NoisyPlane {
+  Eigen::Vector3d normal;  ///< unit length, either sign; not finite: the points do not fix it
+  Eigen::Vector3d narrow;  ///< unit tangent along which the points extend less
+  double width;            ///< their variance along it, without the noise [m²]
+};
+
+/// Unit normal and smaller tangential variance of points with covariance `covariance`, whose noise
+/// is `along` in the direction of the unit vector `ray` and `across` in the others. The normal n
+/// minimizes nᵀCn / nᵀΣn, Σ the noise's covariance. Plain least squares (Σ = I) would turn slanted
+/// surfaces toward the sensor by several degrees, because noise along the ray spreads the points
+/// in the plane as well.
+NoisyPlane fitNoisyPlane(const Eigen::Matrix3d& covariance, const Eigen::Vector3d& ray,
+                         double along, double across);
+
+}  // namespace opp
