@@ -23,18 +23,15 @@ bool sameSurface(const PlaneFit& a, const PlaneFit& b, const RefinementParams& p
   const Eigen::Vector3d normal = ownNormal(joint.scatter(), a.plane.normal());
   const Plane plane = Plane::fromPointNormal(joint.mean(), normal);
   const auto fits = [&](const PlaneFit& part) {
-    const double own = part.meanVariance() + part.slack * part.slack;
+    const double own = part.sums.meanVariance() + part.slack * part.slack;
     return part.moments.squaredError(plane) <= kOneSurface * own * part.moments.weight();
   };
   return fits(a) && fits(b);
 }
 
 void absorb(const PlaneFit& part, PlaneFit& whole) {
-  whole.moments.merge(part.moments);
-  whole.robust_weight += part.robust_weight;
-  whole.square_sum += part.square_sum;
-  whole.variance_sum += part.variance_sum;
-  whole.support += part.support;
+  whole.sums.merge(part.sums);
+  whole.moments = whole.sums.moments();
   whole.slack = std::max(whole.slack, part.slack);
   const Eigen::Vector3d normal = ownNormal(whole.moments.scatter(), whole.plane.normal());
   whole.plane = Plane::fromPointNormal(whole.moments.mean(), normal);
@@ -55,12 +52,13 @@ std::vector<int> survivors(std::vector<PlaneFit>& fits, const RefinementParams& 
   const std::size_t count = fits.size();
   std::vector<std::size_t> order(count);
   std::iota(order.begin(), order.end(), std::size_t{0});
-  std::stable_sort(order.begin(), order.end(),
-                   [&](std::size_t a, std::size_t b) { return fits[a].support > fits[b].support; });
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+    return fits[a].sums.support > fits[b].sums.support;
+  });
   std::vector<std::size_t> kept, first(count);  // first: least index of those merged into a plane
   std::vector<int> target(count, -1);
   for (const std::size_t k : order) {
-    if (fits[k].support < params.min_support) continue;
+    if (fits[k].sums.support < params.min_support) continue;
     const auto same = std::find_if(kept.begin(), kept.end(), [&](std::size_t other) {
       return sameSurface(fits[other], fits[k], params);
     });
@@ -92,7 +90,7 @@ void compact(const std::vector<int>& new_index, std::vector<PlaneFit>& fits,
     if (new_index[k] < 0) continue;
     const auto slot = static_cast<std::size_t>(new_index[k]);
     if (slot >= kept.size()) kept.resize(slot + 1);
-    if (fits[k].support > kept[slot].support) kept[slot] = fits[k];
+    if (fits[k].sums.support > kept[slot].sums.support) kept[slot] = fits[k];
   }
   fits = std::move(kept);
   std::vector<OrthogonalityEdge> moved;
@@ -121,9 +119,10 @@ PlanePrimitive primitiveOf(const PlaneFit& fit, int family, const OrientedCloud&
   result.plane = fit.plane.signedDistance(viewpoint) < 0.0 ? fit.plane.flipped() : fit.plane;
   result.moments = fit.moments;
   result.family = family;
-  result.support = fit.support;
-  result.area = fit.support * cloud.spacing * cloud.spacing;
-  result.rms = fit.robust_weight > 0.0 ? std::sqrt(fit.square_sum / fit.robust_weight) : 0.0;
+  const SampleSums& sums = fit.sums;
+  result.support = sums.support;
+  result.area = sums.support * cloud.spacing * cloud.spacing;
+  result.rms = sums.robust_weight > 0.0 ? std::sqrt(sums.square_sum / sums.robust_weight) : 0.0;
   const Eigen::Vector3d& shared = scan.families[static_cast<std::size_t>(family)].normal;
   const double sign = shared.dot(result.plane.normal()) < 0.0 ? -1.0 : 1.0;
   const Eigen::Matrix<double, 3, 2> tangents = tangentBasis(result.plane.normal());

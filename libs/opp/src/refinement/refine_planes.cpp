@@ -17,18 +17,24 @@
 namespace opp {
 namespace {
 
-/// A plane rests when a pass moves it by less than this part of its standard deviation.
-constexpr double kRest = 0.01;
-/// Passes on a part of the samples: each at least halves what is left of the start's error; the
-/// rest is left to the full passes.
-constexpr int kCoarsePasses = 4;
+/// A plane rests when a pass moves it by less than this part of its standard deviation. A pass leaves
+/// a fifth of the error that it found, so that a hundredth remains.
+constexpr double kRest = 0.05;
+/// Passes on a part of the samples: enough to come from degrees and centimetres near the noise.
+constexpr int kCoarsePasses = 5;
+/// Planes with fewer samples in that part wait for the full passes.
+constexpr int kLeastCoarseSupport = 10;
 /// Families and edges are tested again after the constrained passes; a change restarts them.
 constexpr int kMaxRestructurings = 3;
 
 class Refiner {
  public:
   Refiner(const OrientedCloud& cloud, const PlaneGraph& graph, const RefinementParams& params)
-      : cloud_(cloud), params_(params), edges_(graph.edges), labels_(cloud.size(), -1) {
+      : cloud_(cloud),
+        params_(params),
+        samples_(weightedSamples(cloud, params)),
+        edges_(graph.edges),
+        labels_(cloud.size(), -1) {
     for (const PlaneNode& node : graph.nodes) {
       const double weight = node.moments.weight();
       const double rms =
@@ -36,12 +42,12 @@ class Refiner {
       fits_.emplace_back();
       fits_.back().plane = node.plane;
       fits_.back().slack = std::max(rms, cloud.spacing);
+      fits_.back().moments = node.moments;
     }
   }
 
   Primitives refine() {
     fitAlone();
-    dropAndMerge();
     structure_ = findStructure(estimates(), edges_, params_);
     fitTogether();
     for (int k = 0; k < kMaxRestructurings && restructure(); ++k) fitTogether();
@@ -60,56 +66,66 @@ class Refiner {
     return groups;
   }
 
-  /// Fits every plane for itself, first on a part of the samples.
+  /// Fits every plane for itself, on a part of the samples.
   void fitAlone() {
     std::vector<std::vector<int>> single;
     for (Index k = 0; k < fits_.size(); ++k) single.push_back({static_cast<int>(k)});
-    const Index coarse =
-        std::max<Index>(1, cloud_.size() / static_cast<Index>(std::max(1, params_.coarse_samples)));
-    for (int pass = 0; pass < params_.max_iterations; ++pass) {
-      const Index stride = pass < kCoarsePasses ? coarse : 1;
-      assignSamples(cloud_, groupsOf(single), params_, stride, fits_, labels_);
+    const Index stride = std::max<Index>(
+        1, samples_.size() / static_cast<Index>(std::max(1, params_.coarse_samples)));
+    for (int pass = 0; pass < kCoarsePasses; ++pass) {
+      assignSamples(samples_, groupsOf(single), params_, stride, fits_, labels_);
       bool rest = true;
       for (PlaneFit& fit : fits_) {
-        const Eigen::Vector3d normal = ownNormal(fit.moments.scatter(), fit.plane.normal());
-        rest = move(fit, normal) && rest;
+        if (fit.sums.support < kLeastCoarseSupport) continue;
+        rest = move(fit, ownNormal(fit.moments.scatter(), fit.plane.normal())) && rest;
       }
-      if (rest && stride == 1) return;
-      if (rest) pass = std::max(pass, kCoarsePasses - 1);
+      if (rest) break;
     }
   }
 
   /// Fits all planes jointly, with shared and orthogonal normals.
   void fitTogether() {
+    solve();
     for (int pass = 0; pass < params_.max_iterations; ++pass) {
-      assignSamples(cloud_, groupsOf(structure_.families), params_, 1, fits_, labels_);
-      solve();
-      bool rest = true;
-      for (Index f = 0; f < structure_.families.size(); ++f) {
-        for (const int plane : structure_.families[f]) {
-          rest = move(fits_[static_cast<Index>(plane)], solution_.normals[f]) && rest;
-        }
-      }
-      converged_ = rest && solution_.converged;
-      if (rest) return;
+      assignSamples(samples_, groupsOf(structure_.families), params_, 1, fits_, labels_);
+      converged_ = solve();
+      if (converged_) return;
     }
   }
 
-  void solve() {
-    NormalProblem problem;
+  /// Solves the normals from the moments and moves the planes; true if they hardly moved.
+  bool solve() {
+    solution_ = solveNormals(normalProblem(), familyNormals());
+    bool rest = solution_.converged;
+    for (Index f = 0; f < structure_.families.size(); ++f) {
+      for (const int plane : structure_.families[f]) {
+        rest = move(fits_[static_cast<Index>(plane)], solution_.normals[f]) && rest;
+      }
+    }
+    return rest;
+  }
+
+  std::vector<Eigen::Vector3d> familyNormals() const {
     std::vector<Eigen::Vector3d> normals;
+    for (const std::vector<int>& family : structure_.families) {
+      normals.push_back(fits_[static_cast<Index>(family.front())].plane.normal());
+    }
+    return normals;
+  }
+
+  NormalProblem normalProblem() const {
+    NormalProblem problem;
     for (const std::vector<int>& family : structure_.families) {
       Eigen::Matrix3d scatter = Eigen::Matrix3d::Zero();
       for (const int plane : family) scatter += fits_[static_cast<Index>(plane)].moments.scatter();
       problem.scatters.push_back(scatter);
-      normals.push_back(fits_[static_cast<Index>(family.front())].plane.normal());
     }
     problem.frames = structure_.frames;
     const double variance = params_.systematic_angle * params_.systematic_angle;
     for (const std::array<int, 2>& edge : structure_.soft_edges) {
       problem.soft_edges.push_back({edge, 1.0 / std::max(variance, kLeastAngleVariance)});
     }
-    solution_ = solveNormals(problem, normals);
+    return problem;
   }
 
   /// Tests families and edges again; true if planes or structure changed and need another fit.
@@ -127,7 +143,9 @@ class Refiner {
   /// Sets the plane to ±normal through its samples' mean; true if it hardly moved.
   bool move(PlaneFit& fit, const Eigen::Vector3d& normal) const {
     const double slack = fit.slack;
-    if (fit.support > 0) fit.slack = std::min(slack, fit.excess(params_.outlier_cutoff));
+    if (fit.sums.support > 0) {
+      fit.slack = std::min(slack, fit.sums.excess(params_.outlier_cutoff));
+    }
     const Plane old = fit.plane;
     const Eigen::Vector3d n = normal.dot(old.normal()) < 0.0 ? Eigen::Vector3d(-normal) : normal;
     const Eigen::Vector3d anchor =
@@ -137,7 +155,7 @@ class Refiner {
     const double shift = old.signedDistance(anchor);
     const double squared_change =
         fit.moments.weight() * shift * shift + turn.dot(fit.moments.scatter() * turn);
-    const double spread = std::sqrt(fit.meanVariance() + fit.slack * fit.slack);
+    const double spread = std::sqrt(fit.sums.meanVariance() + fit.slack * fit.slack);
     return squared_change <= kRest * kRest && slack - fit.slack <= 0.1 * spread;
   }
 
@@ -175,6 +193,7 @@ class Refiner {
 
   const OrientedCloud& cloud_;
   const RefinementParams& params_;
+  std::vector<WeightedSample> samples_;
   std::vector<OrthogonalityEdge> edges_;
   std::vector<int> labels_;
   std::vector<PlaneFit> fits_;

@@ -12,6 +12,9 @@ namespace {
 /// Misfit of a plane counts if noise alone would not produce it in 19 of 20 planes.
 constexpr double kChanceSigmas = 2.0;
 
+/// (1e-9 m)²: below any sensor's noise, and no division by zero at the origin.
+constexpr double kLeastVariance = 1e-18;
+
 /// Worth of the mean of n equally correlated measurements, in independent ones.
 double effectiveCount(double n, double correlation) { return n / (1.0 + (n - 1.0) * correlation); }
 
@@ -20,35 +23,81 @@ struct Match {
   double distance = std::numeric_limits<double>::infinity();  ///< signed, along the group's normal
 };
 
-/// Nearest plane of a group to a point at `position` along its normal.
-Match nearest(const ParallelGroup& group, double position) {
-  const auto above = std::lower_bound(
-      group.members.begin(), group.members.end(), position,
-      [](const ParallelGroup::Member& member, double x) { return member.position < x; });
-  Match match;
-  if (above != group.members.end()) match = {above->plane, position - above->position};
-  if (above != group.members.begin()) {
-    const ParallelGroup::Member& below = *std::prev(above);
-    const double distance = position - below.position;
-    if (distance < std::abs(match.distance)) match = {below.plane, distance};
+/// Updates `best` with the plane of a group that is nearest to a point at `position` along the
+/// group's normal.
+void takeNearest(const ParallelGroup& group, double position, Match& best) {
+  // Members ascend: their distances fall to the nearest and rise after it.
+  for (const ParallelGroup::Member& member : group.members) {
+    const double distance = position - member.position;
+    if (std::abs(distance) < std::abs(best.distance)) best = {member.plane, distance};
+    if (distance < 0.0) return;
   }
-  return match;
 }
 
-Match nearestWithNormal(const std::vector<ParallelGroup>& groups, const Eigen::Vector3d& point,
-                        const Eigen::Vector3d& normal, double least_cosine) {
-  Match best;
-  for (const ParallelGroup& group : groups) {
-    if (!(std::abs(group.normal.dot(normal)) >= least_cosine)) continue;
-    const Match match = nearest(group, group.normal.dot(point));
-    if (std::abs(match.distance) < std::abs(best.distance)) best = match;
-  }
-  return best;
+/// Adds a sample at `distance` from the plane; false if it is an outlier.
+bool addSample(const WeightedSample& sample, double distance, double cutoff_squared,
+               PlaneFit& fit) {
+  const double precision = 1.0 / (sample.variance + fit.slack * fit.slack);
+  const double square = distance * distance;
+  const double root = 1.0 - square * precision / cutoff_squared;
+  if (!(root > 0.0)) return false;
+  SampleSums& sums = fit.sums;
+  const double robust = root * root;
+  const double weight = robust * sample.count * precision;
+  const Eigen::Vector3d x = sample.point - sums.origin;
+  const Eigen::Vector3d wx = weight * x;
+  sums.weight += weight;
+  sums.first += wx;
+  sums.second.col(0) += wx * x[0];
+  sums.second.col(1).tail<2>() += wx.tail<2>() * x[1];
+  sums.second(2, 2) += wx[2] * x[2];
+  sums.robust_weight += robust;
+  sums.square_sum += robust * square;
+  sums.variance_sum += robust * sample.variance;
+  ++sums.support;
+  return true;
 }
 
 }  // namespace
 
-double PlaneFit::excess(double outlier_cutoff) const {
+std::vector<WeightedSample> weightedSamples(const OrientedCloud& cloud,
+                                            const RefinementParams& params) {
+  std::vector<WeightedSample> samples(cloud.size());
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    WeightedSample& sample = samples[i];
+    sample.point = cloud.points[i].cast<double>();
+    sample.normal = cloud.normals[i].cast<double>();
+    // Coordinates are rounded to float: no distance is better known than that.
+    const double rounding = std::numeric_limits<float>::epsilon() * sample.point.norm();
+    const double sigma = static_cast<double>(cloud.sigmas[i]);
+    sample.variance = std::max(sigma * sigma + rounding * rounding, kLeastVariance);
+    sample.count = effectiveCount(static_cast<double>(cloud.weights[i]), params.noise_correlation);
+  }
+  return samples;
+}
+
+PointMoments SampleSums::moments() const {
+  if (!(weight > 0.0)) return {};
+  const Eigen::Vector3d mean = first / weight;
+  Eigen::Matrix3d scatter = second.selfadjointView<Eigen::Lower>();
+  scatter -= weight * mean * mean.transpose();
+  return {weight, origin + mean, scatter};
+}
+
+void SampleSums::merge(const SampleSums& other) {
+  PointMoments joint = moments();
+  joint.merge(other.moments());
+  origin = joint.mean();
+  weight = joint.weight();
+  first.setZero();
+  second = joint.scatter();
+  robust_weight += other.robust_weight;
+  square_sum += other.square_sum;
+  variance_sum += other.variance_sum;
+  support += other.support;
+}
+
+double SampleSums::excess(double outlier_cutoff) const {
   if (!(robust_weight > 0.0)) return 0.0;
   // E[ω r²] / E[ω] of a standard normal r under ω = (1 − r²/c²)².
   const double inverse = 1.0 / (outlier_cutoff * outlier_cutoff);
@@ -59,12 +108,6 @@ double PlaneFit::excess(double outlier_cutoff) const {
   const double chance = kChanceSigmas * std::sqrt(2.0 / support) * meanVariance();
   const double beyond = mean_square - meanVariance();
   return beyond > chance ? std::sqrt(beyond) : 0.0;
-}
-
-void PlaneFit::clearSums() {
-  moments = PointMoments();
-  robust_weight = square_sum = variance_sum = 0.0;
-  support = 0;
 }
 
 ParallelGroup makeGroup(const Eigen::Vector3d& normal, const std::vector<std::size_t>& planes,
@@ -80,37 +123,28 @@ ParallelGroup makeGroup(const Eigen::Vector3d& normal, const std::vector<std::si
   return group;
 }
 
-void assignSamples(const OrientedCloud& cloud, const std::vector<ParallelGroup>& groups,
-                   const RefinementParams& params, std::size_t stride, std::vector<PlaneFit>& fits,
-                   std::vector<int>& labels) {
-  for (PlaneFit& fit : fits) fit.clearSums();
+void assignSamples(const std::vector<WeightedSample>& samples,
+                   const std::vector<ParallelGroup>& groups, const RefinementParams& params,
+                   std::size_t stride, std::vector<PlaneFit>& fits, std::vector<int>& labels) {
+  for (PlaneFit& fit : fits) {
+    SampleSums cleared;
+    cleared.origin = fit.moments.empty() ? fit.plane.project(cleared.origin) : fit.moments.mean();
+    fit.sums = cleared;
+  }
   const double least_cosine = std::cos(params.normal_gate);
   const double cutoff_squared = params.outlier_cutoff * params.outlier_cutoff;
-  for (std::size_t i = 0; i < cloud.size(); i += stride) {
-    labels[i] = -1;
-    const Eigen::Vector3d point = cloud.points[i].cast<double>();
-    const Match match =
-        nearestWithNormal(groups, point, cloud.normals[i].cast<double>(), least_cosine);
-    if (!std::isfinite(match.distance)) continue;
-    PlaneFit& fit = fits[match.plane];
-    // Coordinates are rounded to float: no distance is better known than that.
-    const double rounding = std::numeric_limits<float>::epsilon() * point.norm();
-    const double sigma = static_cast<double>(cloud.sigmas[i]);
-    const double variance = sigma * sigma + rounding * rounding;
-    const double spread = variance + fit.slack * fit.slack;
-    const double square = match.distance * match.distance;
-    if (!(square < cutoff_squared * spread)) continue;
-    const double root = 1.0 - square / (cutoff_squared * spread);
-    const double robust = root * root;
-    const double count =
-        effectiveCount(static_cast<double>(cloud.weights[i]), params.noise_correlation);
-    fit.moments.add(point, robust * count / spread);
-    fit.robust_weight += robust;
-    fit.square_sum += robust * square;
-    fit.variance_sum += robust * variance;
-    ++fit.support;
-    labels[i] = static_cast<int>(match.plane);
+  for (std::size_t i = 0; i < samples.size(); i += stride) {
+    const WeightedSample& sample = samples[i];
+    Match best;
+    for (const ParallelGroup& group : groups) {
+      if (!(std::abs(group.normal.dot(sample.normal)) >= least_cosine)) continue;
+      takeNearest(group, group.normal.dot(sample.point), best);
+    }
+    const bool matched = std::isfinite(best.distance) &&
+                         addSample(sample, best.distance, cutoff_squared, fits[best.plane]);
+    labels[i] = matched ? static_cast<int>(best.plane) : -1;
   }
+  for (PlaneFit& fit : fits) fit.moments = fit.sums.moments();
 }
 
 }  // namespace opp

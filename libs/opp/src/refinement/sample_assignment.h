@@ -12,22 +12,42 @@
 
 namespace opp {
 
+/// A sample as the passes need it.
+struct WeightedSample {
+  Eigen::Vector3d point;
+  Eigen::Vector3d normal;
+  double variance;  ///< of one raw point's offset, rounding included [m²]
+  double count;     ///< independent raw points that it is worth
+};
+
+std::vector<WeightedSample> weightedSamples(const OrientedCloud& cloud,
+                                            const RefinementParams& params);
+
+/// Sums over the samples of a plane; ω is Tukey's weight in (0, 1].
+struct SampleSums {
+  Eigen::Vector3d origin = Eigen::Vector3d::Zero();  ///< of the coordinates below, near the mean
+  double weight = 0.0;                               ///< Σ w, w = ω × count / variance [1/m²]
+  Eigen::Vector3d first = Eigen::Vector3d::Zero();   ///< Σ w x
+  Eigen::Matrix3d second = Eigen::Matrix3d::Zero();  ///< Σ w x xᵀ, lower triangle
+  double robust_weight = 0.0;                        ///< Σ ω
+  double square_sum = 0.0;                           ///< Σ ω r² [m²]
+  double variance_sum = 0.0;                         ///< Σ ω σ², σ: of a raw point [m²]
+  int support = 0;                                   ///< samples
+
+  PointMoments moments() const;
+  void merge(const SampleSums& other);
+  /// Mean variance of a raw point [m²].
+  double meanVariance() const { return robust_weight > 0.0 ? variance_sum / robust_weight : 0.0; }
+  /// Standard deviation of the residuals beyond the sensor's noise [m]; 0 if it could be chance.
+  double excess(double outlier_cutoff) const;
+};
+
 /// A plane under refinement and what its samples add up to.
 struct PlaneFit {
   Plane plane;
   double slack = 0.0;  ///< [m] misfit beyond the sensor's noise; gates are wide while it is large
-
-  PointMoments moments;        ///< weights: robust × effective raw points / variance [1/m²]
-  double robust_weight = 0.0;  ///< Σ ω, ω = Tukey's weight in (0, 1]
-  double square_sum = 0.0;     ///< Σ ω r² [m²]
-  double variance_sum = 0.0;   ///< Σ ω σ², σ: of a raw point [m²]
-  int support = 0;             ///< samples
-
-  /// Mean variance of a raw point on the plane [m²].
-  double meanVariance() const { return robust_weight > 0.0 ? variance_sum / robust_weight : 0.0; }
-  /// Standard deviation of the residuals beyond the sensor's noise [m]; 0 if it could be chance.
-  double excess(double outlier_cutoff) const;
-  void clearSums();
+  SampleSums sums;
+  PointMoments moments;  ///< of the sums
 };
 
 /// Planes that share one normal, to be searched by offset.
@@ -46,8 +66,8 @@ ParallelGroup makeGroup(const Eigen::Vector3d& normal, const std::vector<std::si
 
 /// Gives every `stride`-th sample to the nearest plane whose normal agrees, if it is no outlier
 /// there, and sums it up in that plane's fit (IV-b (1), (2)). Labels of the other samples stay.
-void assignSamples(const OrientedCloud& cloud, const std::vector<ParallelGroup>& groups,
-                   const RefinementParams& params, std::size_t stride, std::vector<PlaneFit>& fits,
-                   std::vector<int>& labels);
+void assignSamples(const std::vector<WeightedSample>& samples,
+                   const std::vector<ParallelGroup>& groups, const RefinementParams& params,
+                   std::size_t stride, std::vector<PlaneFit>& fits, std::vector<int>& labels);
 
 }  // namespace opp

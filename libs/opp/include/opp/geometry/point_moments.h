@@ -15,6 +15,11 @@ namespace opp {
 /// Σ wᵢ (n·xᵢ + d)² = πᵀ S π with S = Σ wᵢ (xᵢ,1)(xᵢ,1)ᵀ = weight·(mean,1)(mean,1)ᵀ + scatter.
 class PointMoments {
  public:
+  PointMoments() = default;
+  /// Moments with these values: Σ wᵢ, Σ wᵢ xᵢ / Σ wᵢ, Σ wᵢ (xᵢ−mean)(xᵢ−mean)ᵀ.
+  PointMoments(double weight, const Eigen::Vector3d& mean, const Eigen::Matrix3d& scatter)
+      : weight_(weight), mean_(mean), scatter_(scatter) {}
+
   /// Adds a point with weight ≥ 0 (for least squares 1/σ²). Constant time.
   void add(const Eigen::Vector3d& point, double weight = 1.0);
   /// Adds all that `other` holds (Chan's update). Constant time.
