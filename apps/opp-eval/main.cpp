@@ -94,7 +94,7 @@ void run(CommandLine& line) {
   if (have_poses) {
     const auto error = opp::mapping::trajectoryError(
         readPoses(poses.gt.getValue()), readPoses(poses.est.getValue()), params.trajectory);
-    gt_from_est = error.gt_from_est;
+    gt_from_est = error.gt_map_from_est_map;
     report(error, "trajectory", as_json.getValue(), json);
   }
   if (have_planes) {

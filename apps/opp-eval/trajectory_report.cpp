@@ -36,6 +36,7 @@ Json toJson(const TrajectoryError& error) {
           {"coverage", error.coverage},
           {"path_length_m", error.path_length},
           {"gt_from_est", rowsOf(error.gt_from_est.matrix())},
+          {"gt_map_from_est_map", rowsOf(error.gt_map_from_est_map.matrix())},
           {"ate", rotationAndTranslation(error.ate_translation, error.ate_rotation)},
           {"rpe_per_frame",
            rotationAndTranslation(error.rpe_frame_translation, error.rpe_frame_rotation)},

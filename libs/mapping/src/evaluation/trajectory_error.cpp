@@ -125,6 +125,7 @@ TrajectoryError trajectoryError(const Trajectory& ground_truth, const Trajectory
   result.matched = pairs.size();
   result.coverage = coverageOf(ground_truth, estimate, params.association);
   result.gt_from_est = alignTrajectories(pairs);
+  result.gt_map_from_est_map = alignPoses(pairs);
   measureAbsolute(pairs, result);
   measureRelative(pairs, params.rpe_distance, result);
   return result;

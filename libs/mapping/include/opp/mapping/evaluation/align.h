@@ -32,4 +32,13 @@ struct PosePair {
 /// \throws std::invalid_argument if a pose is not finite.
 Eigen::Isometry3d alignTrajectories(const std::vector<PosePair>& pairs);
 
+/// The rigid motion that brings the estimated poses, positions and orientations together, closest
+/// to the true ones: Σ |Δp|²/σ_p² + |ΔR|²/σ_R² is smallest, where both σ are those of the residuals
+/// themselves (found by iteration). Where the path is short, positions say little about rotation
+/// and orientations much: use this to bring maps into one frame, alignTrajectories for trajectory
+/// errors as others define them.
+///
+/// \return gt_from_est; identity for no pairs. O(n). \throws as alignTrajectories.
+Eigen::Isometry3d alignPoses(const std::vector<PosePair>& pairs);
+
 }  // namespace opp::mapping

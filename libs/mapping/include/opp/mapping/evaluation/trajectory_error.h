@@ -40,6 +40,8 @@ struct TrajectoryError {
   double coverage = 0.0;
   double path_length = 0.0;  ///< of the true poses that were matched [m]
   Eigen::Isometry3d gt_from_est = Eigen::Isometry3d::Identity();  ///< see alignTrajectories
+  /// Aligned by positions and orientations, see alignPoses: for maps that go with the trajectory.
+  Eigen::Isometry3d gt_map_from_est_map = Eigen::Isometry3d::Identity();
   ErrorStatistics ate_translation;  ///< |p_gt − gt_from_est·p_est| [m]
   ErrorStatistics ate_rotation;     ///< angle between both orientations, after alignment [rad]
   /// Error of the motion from one matched pose to the next; needs no alignment.
