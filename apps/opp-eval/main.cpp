@@ -8,10 +8,12 @@
 #include "common/flags.h"
 #include "common/run_main.h"
 #include "opp-eval/primitive_report.h"
+#include "opp-eval/region_report.h"
 #include "opp-eval/trajectory_report.h"
 
 #include <filesystem>
 #include <iostream>
+#include <optional>
 #include <stdexcept>
 #include <string>
 
@@ -76,6 +78,12 @@ void run(CommandLine& line) {
                    "planes, lines and corners, or a folder of such files; with --gt and --est they "
                    "are aligned as the trajectories are",
                    "FILE.json");
+  PairFlags labels(line, "-labels", "labels of the same points", "FILE.{pcd,ply}");
+  opp::apps::AtLeast not_negative(0);
+  TCLAP::ValueArg<int> first_region(
+      "", "first-region",
+      "Smallest true label that is a region (default: 10 for .pcd, as in SynPEB, else 0)", false, 0,
+      &not_negative, line);
   opp::apps::ParameterFlags parameters(line);
   TCLAP::SwitchArg list("", "list-parameters", "Print all thresholds and end", line);
   TCLAP::SwitchArg as_json("", "json", "Print JSON instead of tables", line);
@@ -86,8 +94,9 @@ void run(CommandLine& line) {
   if (list.getValue()) return opp::mapping::writeParameterTable(std::cout, params);
   const bool have_poses = poses.given();
   const bool have_planes = planes.given();
-  if (!have_poses && !have_planes) {
-    throw UsageError("nothing to compare: give --gt and --est, or --gt-planes and --est-planes");
+  const bool have_labels = labels.given();
+  if (!have_poses && !have_planes && !have_labels) {
+    throw UsageError("nothing to compare: give --gt and --est, or the same of planes or labels");
   }
   Json json;
   Eigen::Isometry3d gt_from_est = Eigen::Isometry3d::Identity();
@@ -101,6 +110,12 @@ void run(CommandLine& line) {
     const auto comparison = opp::mapping::compareFiles(planes.gt.getValue(), planes.est.getValue(),
                                                        params.primitives, gt_from_est);
     report(comparison, "primitives", as_json.getValue(), json);
+  }
+  if (have_labels) {
+    const auto metrics = opp::mapping::compareLabels(
+        labels.gt.getValue(), labels.est.getValue(),
+        first_region.isSet() ? std::make_optional(first_region.getValue()) : std::nullopt);
+    report(metrics, "regions", as_json.getValue(), json);
   }
   if (as_json.getValue()) std::cout << json.dump(2) << '\n';
 }

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "opp/mapping/core/trajectory.h"
 #include "opp/mapping/evaluation/move_planar_map.h"
+#include "opp/mapping/io/cloud_file.h"
 #include "opp/mapping/io/planar_map_json.h"
 #include "opp/mapping/io/tum_trajectory.h"
 
@@ -12,6 +13,8 @@
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
+
+#include <algorithm>
 
 namespace opp::mapping {
 namespace {
@@ -171,6 +174,69 @@ TEST_F(OppEval, FoldersWithoutACommonNameAndMixedPathsEndWithOne) {
         runApp("opp-eval", {"--gt-planes", paths[0], "--est-planes", paths[1]}, folder_.path());
     EXPECT_EQ(result.exit_code, 1) << result;
     EXPECT_NE(result.err, "");
+  }
+}
+
+TEST_F(OppEval, LabelsOfTheSamePointsAreComparedInAnyOrder) {
+  PointCloud cloud;
+  std::vector<int> labels;
+  for (int k = 0; k < 60; ++k) {
+    cloud.points.emplace_back(0.1F * static_cast<float>(k), 0.0F, 1.0F);
+    labels.push_back(k / 20);
+  }
+  writeLabeledPly(folder_ / "gt.ply", cloud, labels);
+  std::reverse(cloud.points.begin(), cloud.points.end());
+  std::reverse(labels.begin(), labels.end());
+  for (int& label : labels) label = label == 2 ? 1 : label;  // two regions in one
+  writeLabeledPly(folder_ / "est.ply", cloud, labels);
+  const CommandResult result = runApp(
+      "opp-eval", {"--gt-labels", "gt.ply", "--est-labels", "est.ply", "--json"}, folder_.path());
+  ASSERT_EQ(result.exit_code, 0) << result;
+  const auto json = nlohmann::json::parse(result.out).at("regions");
+  EXPECT_EQ(json.at("gt_regions"), 3);
+  for (const auto& counts : json.at("thresholds")) {
+    EXPECT_EQ(counts.at("correct"), 1);
+    EXPECT_EQ(counts.at("under_segmented"), 1);
+  }
+  EXPECT_EQ(runApp("opp-eval",
+                   {"--gt-labels", "gt.ply", "--est-labels", "est.ply", "--first-region", "5"},
+                   folder_.path())
+                .exit_code,
+            1);
+}
+
+TEST_F(OppEval, SynpebAgainstItselfIsAllCorrectAndMergedPlanesAreOneUnderSegmentation) {
+  OPP_SKIP_WITHOUT_SHARED_DATA();
+  const std::string gt = test::sharedData("fixtures/synpeb_test_500.pcd").string();
+  const auto evaluate = [&](const std::string& est) {
+    const CommandResult result =
+        runApp("opp-eval", {"--gt-labels", gt, "--est-labels", est, "--json"});
+    EXPECT_EQ(result.exit_code, 0) << result;
+    return nlohmann::json::parse(result.out).at("regions");
+  };
+  const auto itself = evaluate(gt);
+  const int regions = itself.at("gt_regions");
+  EXPECT_EQ(regions, 38);
+  EXPECT_EQ(itself.at("mean_correct"), 1.0);
+  for (const auto& counts : itself.at("thresholds")) EXPECT_EQ(counts.at("correct"), regions);
+
+  LabeledCloud merged = readLabeledCloudFile(gt);
+  std::vector<int> sizes(256, 0);
+  for (const int label : merged.labels) {
+    if (label >= 10) ++sizes.at(static_cast<std::size_t>(label));
+  }
+  const auto largest = std::max_element(sizes.begin(), sizes.end()) - sizes.begin();
+  sizes[static_cast<std::size_t>(largest)] = 0;
+  const auto second = std::max_element(sizes.begin(), sizes.end()) - sizes.begin();
+  for (int& label : merged.labels) {
+    if (label == second) label = static_cast<int>(largest);
+  }
+  writeLabeledPly(folder_ / "merged.ply", merged.cloud, merged.labels);
+  for (const auto& counts : evaluate((folder_ / "merged.ply").string()).at("thresholds")) {
+    EXPECT_EQ(counts.at("correct"), regions - 2);
+    EXPECT_EQ(counts.at("under_segmented"), 1);
+    EXPECT_EQ(counts.at("over_segmented"), 0);
+    EXPECT_EQ(counts.at("missed"), 0);
   }
 }
 
