@@ -62,6 +62,15 @@ Geos::Geometry Geos::unionOf(const Geometry& parts) const {
   return checked(GEOSUnaryUnion_r(handle_, parts.get()));
 }
 
+Geos::Geometry Geos::makeValid(const Geometry& geometry) const {
+  GEOSMakeValidParams* params = GEOSMakeValidParams_create_r(handle_);
+  GEOSMakeValidParams_setMethod_r(handle_, params, GEOS_MAKE_VALID_STRUCTURE);
+  GEOSMakeValidParams_setKeepCollapsed_r(handle_, params, 0);
+  GEOSGeometry* valid = GEOSMakeValidWithParams_r(handle_, geometry.get(), params);
+  GEOSMakeValidParams_destroy_r(handle_, params);
+  return checked(valid);
+}
+
 Geos::Geometry Geos::simplify(const Geometry& geometry, double tolerance) const {
   return checked(GEOSTopologyPreserveSimplify_r(handle_, geometry.get(), tolerance));
 }

@@ -7,6 +7,8 @@
 #include "opp/mapping/planar/build_polygons.h"
 #include "opp/mapping/planar/line_intervals.h"
 #include "opp/mapping/planar/plane_extent.h"
+#include "opp/mapping/planar/plane_kinds.h"
+#include "opp/mapping/planar/snap_polygons.h"
 
 #include <Eigen/LU>
 #include <Eigen/SVD>
@@ -127,9 +129,9 @@ std::map<LandmarkPair, std::vector<LineInterval>> lineIntervals(const MapState& 
           intersect(map.landmarks.planes[Index(pair.first)].plane_in_map,
                     map.landmarks.planes[Index(pair.second)].plane_in_map);
       if (!line) continue;
-      const auto [begin, end] = std::minmax(line->parameterOf(keyframe.map_from_body * seen.start),
-                                            line->parameterOf(keyframe.map_from_body * seen.end));
-      intervals[pair].push_back({begin, end, seen.kind});
+      const double start = line->parameterOf(keyframe.map_from_body * seen.start);
+      const double end = line->parameterOf(keyframe.map_from_body * seen.end);
+      intervals[pair].push_back({std::min(start, end), std::max(start, end), seen.kind});
     }
   }
   return intervals;
@@ -226,6 +228,10 @@ PlanarMap planarMapOf(const MapState& map, const PlanarParams& params) {
   addFamilies(map, id_of_landmark, result);
   addLines(map, id_of_landmark, result);
   addCorners(map, id_of_landmark, result);
+  snapPolygons(result, params);
+  // Without a gravity sensor the first body frame's z axis is roughly up: see estimateUp.
+  const auto up = estimateUp(result, Eigen::Vector3d::UnitZ(), params);
+  if (up) classifyPlanes(result, *up, params);
   return result;
 }
 

@@ -5,6 +5,7 @@
 #include "opp/mapping/planar/build_polygons.h"
 #include "opp/mapping/planar/plane_extent.h"
 #include "opp/mapping/planar/plane_kinds.h"
+#include "opp/mapping/planar/snap_polygons.h"
 
 #include <algorithm>
 #include <cmath>
@@ -111,6 +112,7 @@ PlanarMap planarMapOfScan(const OrientedCloud& cloud, const Primitives& primitiv
                            corner.covariance,
                            {timestamp}});
   }
+  snapPolygons(map, params);
   if (up) {
     classifyPlanes(map, *up, params);
     for (PlanarMapPlane& plane : map.planes) {

@@ -16,6 +16,7 @@ struct PlanarParams {
   double bridge = 0.15;
   double min_area = 0.05;
   double outline_tolerance = 0.04;
+  double snap = 0.1;
   double open_fraction = 0.25;
   double tilt_tolerance = degToRad(10.0);
   double max_camera_tilt = degToRad(45.0);
@@ -28,6 +29,8 @@ struct PlanarParams {
     f(p.min_area, Field{"min_area", "m2", 0.0, 100.0, "smaller polygons and holes are dropped"});
     f(p.outline_tolerance,
       Field{"outline_tolerance", "m", 0.0, 1.0, "outlines are simplified by at most this"});
+    f(p.snap, Field{"snap", "m", 0.0, 1.0,
+                    "outlines this near to a line or corner of their plane are moved onto it"});
     f(p.open_fraction, Field{"open_fraction", "", 0.0, 1.0,
                              "a hole stays open if rays passed through this part of it"});
     f(p.tilt_tolerance, Field{"tilt_tolerance", "rad", 0.0, 0.8,

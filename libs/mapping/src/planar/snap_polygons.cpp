@@ -1,0 +1,125 @@
+// SPDX-FileCopyrightText: 2026 The opp-mapping authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "opp/mapping/planar/snap_polygons.h"
+
+#include "opp/mapping/planar/build_polygons.h"
+#include "opp/mapping/planar/plane_extent.h"
+
+#include "planar/geos.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace opp::mapping {
+namespace {
+
+/// Vertices on a straight edge are dropped: far above rounding, far below what shows.
+constexpr double kStraight = 1e-6;
+
+/// What the outlines on one plane snap to, in the plane's coordinates.
+struct Targets {
+  std::vector<Eigen::Vector2d> corners;
+  std::vector<std::pair<Eigen::Vector2d, Eigen::Vector2d>> lines;
+  bool empty() const { return corners.empty() && lines.empty(); }
+};
+
+Targets targetsOn(const PlanarMapPlane& plane, const PlaneFrame& frame, const PlanarMap& map) {
+  const auto is_of_plane = [&](const auto& element) {
+    return std::find(element.planes.begin(), element.planes.end(), plane.id) !=
+           element.planes.end();
+  };
+  Targets targets;
+  for (const PlanarMapCorner& corner : map.corners) {
+    if (is_of_plane(corner)) targets.corners.push_back(frame.project(corner.position));
+  }
+  for (const PlanarMapLine& line : map.lines) {
+    if (is_of_plane(line)) {
+      targets.lines.emplace_back(frame.project(line.start), frame.project(line.end));
+    }
+  }
+  return targets;
+}
+
+/// The nearest point of a segment to `point`.
+Eigen::Vector2d nearestOn(const Eigen::Vector2d& start, const Eigen::Vector2d& end,
+                          const Eigen::Vector2d& point) {
+  const Eigen::Vector2d along = end - start;
+  const double squared = along.squaredNorm();
+  const double part = squared > 0.0 ? (point - start).dot(along) / squared : 0.0;
+  return start + std::clamp(part, 0.0, 1.0) * along;
+}
+
+/// A corner goes before a line, what is near before what is far.
+Eigen::Vector2d snapped(const Eigen::Vector2d& vertex, const Targets& targets, double reach) {
+  Eigen::Vector2d best = vertex;
+  double distance = reach;
+  const auto consider = [&](const Eigen::Vector2d& candidate) {
+    if ((candidate - vertex).norm() > distance) return;
+    distance = (candidate - vertex).norm();
+    best = candidate;
+  };
+  for (const Eigen::Vector2d& corner : targets.corners) consider(corner);
+  if (best != vertex) return best;
+  for (const auto& [start, end] : targets.lines) consider(nearestOn(start, end, vertex));
+  return best;
+}
+
+std::vector<Polygon2d> untied(const Polygon2d& polygon, double min_area, const Geos& geos) {
+  const Geos::Geometry valid = geos.makeValid(geos.polygon(polygon));
+  std::vector<Polygon2d> parts = geos.polygonsOf(geos.simplify(valid, kStraight));
+  const auto is_small = [&](const Ring2d& ring) { return std::abs(signedArea(ring)) < min_area; };
+  for (Polygon2d& part : parts) {
+    part.holes.erase(std::remove_if(part.holes.begin(), part.holes.end(), is_small),
+                     part.holes.end());
+  }
+  parts.erase(std::remove_if(parts.begin(), parts.end(),
+                             [&](const Polygon2d& part) { return is_small(part.outer); }),
+              parts.end());
+  return parts;
+}
+
+Ring2d snappedRing(const std::vector<Eigen::Vector3d>& ring, const PlaneFrame& frame,
+                   const Targets& targets, double reach) {
+  Ring2d result;
+  for (const Eigen::Vector3d& vertex : ring) {
+    result.push_back(snapped(frame.project(vertex), targets, reach));
+  }
+  return result;
+}
+
+std::vector<Eigen::Vector3d> lifted(const Ring2d& ring, const PlaneFrame& frame) {
+  std::vector<Eigen::Vector3d> vertices;
+  for (const Eigen::Vector2d& vertex : ring) vertices.push_back(frame.lift(vertex));
+  return vertices;
+}
+
+}  // namespace
+
+void snapPolygons(PlanarMap& map, const PlanarParams& params) {
+  const Geos geos;
+  for (PlanarMapPlane& plane : map.planes) {
+    const PlaneFrame frame(plane.plane, Eigen::Vector3d::UnitX());
+    const Targets targets = targetsOn(plane, frame, map);
+    if (targets.empty() || plane.polygons.empty()) continue;
+    std::vector<PlanarPolygon> polygons;
+    for (const PlanarPolygon& polygon : plane.polygons) {
+      Polygon2d flat{snappedRing(polygon.outer, frame, targets, params.snap), {}};
+      for (const auto& hole : polygon.holes) {
+        flat.holes.push_back(snappedRing(hole, frame, targets, params.snap));
+      }
+      for (const Polygon2d& part : untied(flat, params.min_area, geos)) {
+        polygons.push_back({lifted(part.outer, frame), {}});
+        for (const Ring2d& hole : part.holes) {
+          polygons.back().holes.push_back(lifted(hole, frame));
+        }
+      }
+    }
+    if (polygons.empty()) continue;
+    plane.polygons = std::move(polygons);
+    plane.area = areaOf(plane.polygons, plane.plane.normal());
+    plane.centroid = centroidOf(plane.polygons, plane.plane.normal());
+  }
+}
+
+}  // namespace opp::mapping
