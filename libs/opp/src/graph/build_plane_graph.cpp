@@ -8,7 +8,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <numeric>
 #include <utility>
 
@@ -158,11 +157,14 @@ std::vector<std::vector<int>> samplesOf(const Builder& builder) {
 
 /// Drops clusters without a connected patch, large and wide enough, of samples that no stronger
 /// cluster explains: copies of a plane, and planes that cut through others (a slope along a stair).
+/// The others are fitted to these samples, which frees a small plane that was drawn towards a large
+/// one beside it.
 void dropUnsupported(Builder& builder) {
   std::stable_sort(builder.clusters.begin(), builder.clusters.end(),
                    [](const Cluster& a, const Cluster& b) { return a.samples > b.samples; });
   builder.labels = builder.assigner.assignToFirst(planesOf(builder));
   const auto samples = samplesOf(builder);
+  const auto moments = builder.assigner.moments(builder.labels, builder.clusters.size());
   std::vector<Cluster> kept;
   const double spacing = builder.cloud.spacing;
   for (std::size_t c = 0; c < builder.clusters.size(); ++c) {
@@ -170,38 +172,46 @@ void dropUnsupported(Builder& builder) {
     if (patch.area >= builder.params.min_area * spacing * spacing &&
         patch.width >= builder.params.min_width * spacing) {
       kept.push_back(builder.clusters[c]);
+      kept.back().plane = moments[c].fitPlane(builder.cloud.viewpoint.cast<double>());
     }
   }
   builder.clusters = std::move(kept);
 }
 
-/// Orthogonal votes between clusters; keys in ascending order.
-std::map<std::array<int, 2>, double> edgeVotes(Builder& builder) {
-  std::vector<int> node_of(builder.hypotheses.planes.size(), -1);
+/// Orthogonal votes between clusters; 0 for pairs that no reference point voted for.
+Eigen::MatrixXd edgeVotes(Builder& builder) {
+  const auto count = static_cast<Eigen::Index>(builder.clusters.size());
+  std::vector<Eigen::Index> node_of(builder.hypotheses.planes.size(), -1);
   for (std::size_t c = 0; c < builder.clusters.size(); ++c) {
-    node_of[builder.sets.root(builder.clusters[c].hypothesis)] = static_cast<int>(c);
+    node_of[builder.sets.root(builder.clusters[c].hypothesis)] = static_cast<Eigen::Index>(c);
   }
-  std::map<std::array<int, 2>, double> votes;
+  Eigen::MatrixXd votes = Eigen::MatrixXd::Zero(count, count);
   for (const OrthogonalPair& pair : builder.hypotheses.pairs) {
-    const int a = node_of[builder.sets.root(static_cast<std::size_t>(pair.reference))];
-    const int b = node_of[builder.sets.root(static_cast<std::size_t>(pair.partner))];
-    if (a >= 0 && b >= 0 && a != b) votes[{std::min(a, b), std::max(a, b)}] += pair.votes;
+    const Eigen::Index a = node_of[builder.sets.root(static_cast<std::size_t>(pair.reference))];
+    const Eigen::Index b = node_of[builder.sets.root(static_cast<std::size_t>(pair.partner))];
+    if (a >= 0 && b >= 0 && a != b) votes(std::min(a, b), std::max(a, b)) += pair.votes;
   }
   return votes;
 }
 
+/// Edges of all pairs that are orthogonal and meet where there are samples. Votes are counted, not
+/// required: between two small planes there may be no reference point.
 std::vector<OrthogonalityEdge> findEdges(Builder& builder) {
   const auto samples = samplesOf(builder);
+  const Eigen::MatrixXd votes = edgeVotes(builder);
   const double spacing = builder.cloud.spacing;
   std::vector<OrthogonalityEdge> edges;
-  for (const auto& [planes, votes] : edgeVotes(builder)) {
-    const auto a = static_cast<std::size_t>(planes[0]), b = static_cast<std::size_t>(planes[1]);
-    const Plane &plane_a = builder.clusters[a].plane, &plane_b = builder.clusters[b].plane;
-    const double cosine = plane_a.normal().dot(plane_b.normal());
-    if (std::abs(cosine) > std::sin(builder.params.orthogonality)) continue;
-    const double length = commonEdgeLength(builder.cloud, plane_a, samples[a], plane_b, samples[b],
-                                           builder.params.edge_reach * spacing);
-    if (length >= builder.params.min_edge_length * spacing) edges.push_back({planes, votes});
+  for (std::size_t a = 0; a < builder.clusters.size(); ++a) {
+    for (std::size_t b = a + 1; b < builder.clusters.size(); ++b) {
+      const Plane &plane_a = builder.clusters[a].plane, &plane_b = builder.clusters[b].plane;
+      const double cosine = plane_a.normal().dot(plane_b.normal());
+      if (std::abs(cosine) > std::sin(builder.params.orthogonality)) continue;
+      const double length = commonEdgeLength(builder.cloud, plane_a, samples[a], plane_b,
+                                             samples[b], builder.params.edge_reach * spacing);
+      if (length < builder.params.min_edge_length * spacing) continue;
+      edges.push_back({{static_cast<int>(a), static_cast<int>(b)},
+                       votes(static_cast<Eigen::Index>(a), static_cast<Eigen::Index>(b))});
+    }
   }
   return edges;
 }

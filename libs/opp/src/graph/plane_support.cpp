@@ -84,6 +84,19 @@ std::vector<std::int64_t> cellsAlongLine(const OrientedCloud& cloud,
   return cells;
 }
 
+/// Number of cells of `cells` that lie in or beside a cell of `others`: the spacing of samples is
+/// not exactly regular.
+std::size_t countNear(const std::vector<std::int64_t>& cells,
+                      const std::vector<std::int64_t>& others) {
+  std::size_t count = 0;
+  auto other = others.begin();
+  for (const std::int64_t cell : cells) {
+    while (other != others.end() && *other < cell - 1) ++other;
+    if (other != others.end() && *other <= cell + 1) ++count;
+  }
+  return count;
+}
+
 }  // namespace
 
 SampleAssigner::SampleAssigner(const OrientedCloud& cloud, const SensorModel& sensor,
@@ -192,14 +205,8 @@ double commonEdgeLength(const OrientedCloud& cloud, const Plane& a, const std::v
   const double cell = cloud.spacing;
   const auto cells_a = cellsAlongLine(cloud, on_a, b, direction, reach, cell);
   const auto cells_b = cellsAlongLine(cloud, on_b, a, direction, reach, cell);
-  // Samples of neighbouring cells count as side by side: spacing is not exactly regular.
-  std::int64_t shared = 0;
-  auto b_cell = cells_b.begin();
-  for (const std::int64_t a_cell : cells_a) {
-    while (b_cell != cells_b.end() && *b_cell < a_cell - 1) ++b_cell;
-    if (b_cell != cells_b.end() && *b_cell <= a_cell + 1) ++shared;
-  }
-  return static_cast<double>(shared) * cell;
+  return static_cast<double>(std::min(countNear(cells_a, cells_b), countNear(cells_b, cells_a))) *
+         cell;
 }
 
 }  // namespace opp

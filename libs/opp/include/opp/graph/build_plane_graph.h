@@ -15,7 +15,8 @@ namespace opp {
 /// given to the nearest plane (distance and normal), planes are fitted to their samples' moments,
 /// and two planes become one only if the samples of both stay within the noise of the common plane:
 /// parallel surfaces are never chained. Planes without a connected patch of samples are dropped.
-/// An edge needs orthogonal votes, orthogonal planes, and samples of both along their common line.
+/// An edge needs orthogonal planes with samples of both along their common line; it carries the
+/// orthogonal votes of the pair.
 ///
 /// Nodes come in descending order of support. Empty without hypotheses. Signs of normals do not
 /// matter. O(hypotheses × planes + samples × planes).

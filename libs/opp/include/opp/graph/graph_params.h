@@ -21,7 +21,7 @@ struct GraphParams {
   double min_width = 2.5;                ///< see visit
   double orthogonality = degToRad(5.0);  ///< see visit
   double edge_reach = 4.0;               ///< see visit
-  double min_edge_length = 2.0;          ///< see visit
+  double min_edge_length = 3.0;          ///< see visit
   int rounds = 2;                        ///< see visit
 
   template <typename Self, typename F>
