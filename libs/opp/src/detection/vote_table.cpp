@@ -13,7 +13,8 @@ VoteTable::VoteTable(int theta_bins, int rho_bins, double radius)
     : theta_bins_(theta_bins),
       rho_bins_(rho_bins),
       radius_(static_cast<float>(radius)),
-      counts_(static_cast<std::size_t>(theta_bins) * static_cast<std::size_t>(rho_bins), 0) {}
+      counts_(static_cast<std::size_t>(theta_bins + 2) * static_cast<std::size_t>(rho_bins + 2),
+              0) {}
 
 void VoteTable::cast(float theta, float rho, std::uint32_t voter) {
   constexpr float kPiF = static_cast<float>(kPi);
@@ -26,23 +27,22 @@ void VoteTable::cast(float theta, float rho, std::uint32_t voter) {
   };
   const Vote vote{theta, rho, bin(theta, kPiF, theta_bins_),
                   bin(rho + radius_, 2.0F * radius_, rho_bins_), voter};
-  ++counts_[static_cast<std::size_t>(index({vote.theta_bin, vote.rho_bin}))];
+  count(vote, 1);
   votes_.push_back(vote);
 }
 
-VoteTable::Bin VoteTable::wrapped(Bin bin) const {
-  if (bin.theta < 0) return {bin.theta + theta_bins_, rho_bins_ - 1 - bin.rho};
-  if (bin.theta >= theta_bins_) return {bin.theta - theta_bins_, rho_bins_ - 1 - bin.rho};
-  return bin;
+void VoteTable::count(const Vote& vote, std::int32_t change) {
+  counts_[index(vote.theta_bin, vote.rho_bin)] += change;
+  // The rows beside the fold once more on its other side, mirrored.
+  const int mirrored = rho_bins_ - 1 - vote.rho_bin;
+  if (vote.theta_bin == 0) counts_[index(theta_bins_, mirrored)] += change;
+  if (vote.theta_bin == theta_bins_ - 1) counts_[index(-1, mirrored)] += change;
 }
 
-int VoteTable::windowVotes(Bin center) const {
+int VoteTable::windowVotes(int theta_bin, int rho_bin) const {
+  const std::int32_t* row = &counts_[index(theta_bin - 1, rho_bin - 1)];
   int sum = 0;
-  for (int t = center.theta - 1; t <= center.theta + 1; ++t) {
-    for (int r = std::max(0, center.rho - 1); r <= std::min(rho_bins_ - 1, center.rho + 1); ++r) {
-      sum += counts_[static_cast<std::size_t>(index(wrapped({t, r})))];
-    }
-  }
+  for (int k = 0; k < 3; ++k, row += rho_bins_ + 2) sum += row[0] + row[1] + row[2];
   return sum;
 }
 
@@ -66,7 +66,7 @@ VotePeak VoteTable::takePeak() {
   Bin center{0, 0};
   int best = 0;
   for (const Vote& vote : votes_) {
-    const int sum = windowVotes({vote.theta_bin, vote.rho_bin});
+    const int sum = windowVotes(vote.theta_bin, vote.rho_bin);
     if (sum <= best) continue;
     best = sum;
     center = {vote.theta_bin, vote.rho_bin};
@@ -81,7 +81,7 @@ VotePeak VoteTable::takePeak() {
     peak.theta += theta;
     peak.rho += rho;
     peak.voters.push_back(vote.voter);
-    --counts_[static_cast<std::size_t>(index({vote.theta_bin, vote.rho_bin}))];
+    count(vote, -1);
   }
   votes_.resize(kept);
   if (peak.voters.empty()) return peak;
@@ -91,9 +91,7 @@ VotePeak VoteTable::takePeak() {
 }
 
 void VoteTable::clear() {
-  for (const Vote& vote : votes_) {
-    counts_[static_cast<std::size_t>(index({vote.theta_bin, vote.rho_bin}))] = 0;
-  }
+  for (const Vote& vote : votes_) count(vote, -1);
   votes_.clear();
 }
 

@@ -4,6 +4,7 @@
 
 #include "opp/graph/union_find.h"
 
+#include "detection/gather_hypotheses.h"
 #include "graph/plane_support.h"
 
 #include <algorithm>
@@ -41,33 +42,19 @@ std::vector<std::size_t> descending(std::size_t count, const std::vector<double>
   return order;
 }
 
-/// Is each anchor near the other hypothesis' plane, and are the normals alike? The reach grows with
-/// the anchors' distance, as the effect of a plane's angular error does.
-bool similar(const PlaneHypothesis& a, const PlaneHypothesis& b, double reach, double angle) {
-  const double cosine = std::abs(a.plane.normal().dot(b.plane.normal()));
-  if (cosine < std::cos(angle)) return false;
-  return std::abs(a.plane.signedDistance(b.anchor)) < reach &&
-         std::abs(b.plane.signedDistance(a.anchor)) < reach;
-}
-
-/// Strongest hypotheses first, each joins the strongest earlier one that it is similar to.
-void gatherHypotheses(Builder& builder) {
+/// One cluster for each set of hypotheses of one plane.
+void gatherClusters(Builder& builder) {
   const auto& planes = builder.hypotheses.planes;
-  std::vector<double> votes;
-  for (const PlaneHypothesis& hypothesis : planes) votes.push_back(hypothesis.votes);
   // Half the least distance of parallel surfaces that the samples can tell apart.
   const double reach = 0.5 * builder.cloud.spacing;
-  for (const std::size_t h : descending(planes.size(), votes)) {
-    const auto leader =
-        std::find_if(builder.clusters.begin(), builder.clusters.end(), [&](const Cluster& cluster) {
-          return similar(planes[cluster.hypothesis], planes[h], reach, builder.params.merge_angle);
-        });
-    if (leader == builder.clusters.end()) {
-      builder.clusters.push_back({planes[h].plane, {}, votes[h], 0.0, h});
-    } else {
-      builder.sets.join(leader->hypothesis, h);
-      leader->votes += votes[h];
-    }
+  const GatheredHypotheses gathered = gatherHypotheses(planes, reach, builder.params.merge_angle);
+  std::vector<double> votes(planes.size());
+  for (std::size_t h = 0; h < planes.size(); ++h) {
+    builder.sets.join(gathered.leader_of[h], h);
+    votes[gathered.leader_of[h]] += planes[h].votes;
+  }
+  for (const std::size_t leader : gathered.leaders) {
+    builder.clusters.push_back({planes[leader].plane, {}, votes[leader], 0.0, leader});
   }
 }
 
@@ -229,7 +216,7 @@ PlaneGraph buildPlaneGraph(const OrientedCloud& cloud, const OppHypotheses& hypo
                   UnionFind(hypotheses.planes.size()),
                   {},
                   {}};
-  gatherHypotheses(builder);
+  gatherClusters(builder);
   for (int round = 0; round < params.rounds; ++round) {
     assignAndFit(builder);
     mergeClusters(builder);

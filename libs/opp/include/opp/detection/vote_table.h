@@ -10,8 +10,8 @@ namespace opp {
 
 /// A maximum of the accumulator.
 struct VotePeak {
-  double theta = 0.0;  ///< [rad] mean of the peak's votes, in [−π/θ bins, π + ...)
-  double rho = 0.0;    ///< [m] mean of the peak's votes
+  double theta = 0.0;                 ///< [rad] mean of the peak's votes, within a bin of [0, π)
+  double rho = 0.0;                   ///< [m] mean of the peak's votes
   std::vector<std::uint32_t> voters;  ///< as given to `cast`; empty: no votes are left
 };
 
@@ -41,9 +41,12 @@ class VoteTable {
   struct Bin {
     std::int32_t theta, rho;
   };
-  int index(Bin bin) const { return bin.theta * rho_bins_ + bin.rho; }
-  Bin wrapped(Bin bin) const;
-  int windowVotes(Bin center) const;
+  /// Place of a bin in counts_, which has a margin of one bin on each side.
+  std::size_t index(int theta_bin, int rho_bin) const {
+    return static_cast<std::size_t>((theta_bin + 1) * (rho_bins_ + 2) + rho_bin + 1);
+  }
+  void count(const Vote& vote, std::int32_t change);
+  int windowVotes(int theta_bin, int rho_bin) const;
   bool inWindow(const Vote& vote, Bin center, double& theta, double& rho) const;
 
   int theta_bins_, rho_bins_;

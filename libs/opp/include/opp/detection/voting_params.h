@@ -14,9 +14,11 @@ namespace opp {
 /// points, 250 partners within 1 m, δ_n = 20°, bins of 10° and 8 cm.
 struct VotingParams {
   static constexpr std::string_view kSection = "voting";
-  int reference_points = 600;                ///< N
+  int reference_points = 250;                ///< N of the first round
+  int narrow_reference_points = 250;         ///< N of the second round
   int partners = 300;                        ///< K
   double neighbourhood = 22.0;               ///< τ_d / spacing
+  double narrowing = 3.0;                    ///< see visit
   double normal_tolerance = degToRad(20.0);  ///< δ_n
   int theta_bins = 18;                       ///< see visit
   int rho_bins = 25;                         ///< see visit
@@ -29,9 +31,14 @@ struct VotingParams {
   static void visit(Self&& p, F&& f) {
     f(p.reference_points,
       Field{"reference_points", "", 1, 1e7, "reference points, spread evenly over the cloud"});
+    f(p.narrow_reference_points,
+      Field{"narrow_reference_points", "", 0, 1e7,
+            "further ones, spread evenly over what lies on no plane found so far"});
     f(p.partners, Field{"partners", "", 1, 1e5, "at most this many partners per reference point"});
     f(p.neighbourhood,
       Field{"neighbourhood", "", 2.0, 1e4, "partners are nearer than this many sample spacings"});
+    f(p.narrowing, Field{"narrowing", "", 1.0, 100.0,
+                         "the further reference points look this many times less far"});
     f(p.normal_tolerance, Field{"normal_tolerance", "rad", 0.01, kPi / 4.0,
                                 "error allowed in the angle between two normals"});
     f(p.theta_bins, Field{"theta_bins", "", 4, 180, "bins of the direction of a partner plane"});

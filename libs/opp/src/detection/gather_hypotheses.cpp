@@ -1,0 +1,41 @@
+// SPDX-FileCopyrightText: 2026 The opp-mapping authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "detection/gather_hypotheses.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace opp {
+namespace {
+
+bool samePlane(const PlaneHypothesis& a, const PlaneHypothesis& b, double reach, double cosine) {
+  return std::abs(a.plane.normal().dot(b.plane.normal())) > cosine &&
+         std::abs(a.plane.signedDistance(b.anchor)) < reach &&
+         std::abs(b.plane.signedDistance(a.anchor)) < reach;
+}
+
+}  // namespace
+
+GatheredHypotheses gatherHypotheses(const std::vector<PlaneHypothesis>& hypotheses, double reach,
+                                    double angle) {
+  std::vector<std::size_t> order(hypotheses.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+    return hypotheses[a].votes > hypotheses[b].votes;
+  });
+  const double cosine = std::cos(angle);
+  GatheredHypotheses gathered;
+  gathered.leader_of.resize(hypotheses.size());
+  for (const std::size_t h : order) {
+    const auto leader =
+        std::find_if(gathered.leaders.begin(), gathered.leaders.end(), [&](std::size_t candidate) {
+          return samePlane(hypotheses[candidate], hypotheses[h], reach, cosine);
+        });
+    gathered.leader_of[h] = leader == gathered.leaders.end() ? h : *leader;
+    if (leader == gathered.leaders.end()) gathered.leaders.push_back(h);
+  }
+  return gathered;
+}
+
+}  // namespace opp

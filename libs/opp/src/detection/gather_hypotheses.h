@@ -1,0 +1,22 @@
+// SPDX-FileCopyrightText: 2026 The opp-mapping authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "opp/detection/detect_opps.h"
+
+#include <cstddef>
+#include <vector>
+
+namespace opp {
+
+/// For each hypothesis the index of the strongest one that is the same plane (its leader): each
+/// one's anchor lies within `reach` [m] of the other's plane, and the normals differ by less than
+/// `angle` [rad], signs aside. Sommer et al. 2020, III-c. O(hypotheses × leaders).
+struct GatheredHypotheses {
+  std::vector<std::size_t> leader_of;
+  std::vector<std::size_t> leaders;  ///< in descending order of votes
+};
+GatheredHypotheses gatherHypotheses(const std::vector<PlaneHypothesis>& hypotheses, double reach,
+                                    double angle);
+
+}  // namespace opp
