@@ -36,7 +36,8 @@ std::string presetNames() {
 Request parse(opp::apps::CommandLine& line) {
   using Text = TCLAP::ValueArg<std::string>;
   using Number = TCLAP::ValueArg<double>;
-  Text format("", "format", "tum, icl-nuim, 7scenes, redwood or kitti", true, "", "FORMAT", line);
+  Text format("", "format", "tum, icl-nuim, 7scenes, redwood, kitti, pcd or ply", true, "",
+              "FORMAT", line);
   opp::apps::InputFlag input(line, "Folder of the data set");
   opp::apps::OutputFlag output(line, "Rawlog; FILE.gt.tum goes beside it if the set has poses",
                                "FILE.rawlog", true);

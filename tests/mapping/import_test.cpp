@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "opp/mapping/importing/import_plan.h"
 #include "opp/mapping/importing/run_import.h"
+#include "opp/mapping/io/cloud_file.h"
 #include "opp/mapping/io/gray16_png.h"
 
 #include "support/gray_png.h"
@@ -18,6 +19,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace opp::mapping {
 namespace {
@@ -288,6 +290,58 @@ TEST_F(Import, KittiKeepsPointsBitForBitAndTurnsCameraPosesIntoThoseOfTheLidar) 
   EXPECT_THROW(runImport(import, rawlog(), {}), std::runtime_error);
   fs::remove(folder_ / "calib.txt");
   EXPECT_NE(planError(DatasetFormat::kKitti).find("calib.txt: missing"), std::string::npos);
+}
+
+TEST_F(Import, CloudSeriesKeepPointsBitForBitAndTakeTimesFromNames) {
+  for (const std::string& extension : {std::string(".ply"), std::string(".pcd")}) {
+    const fs::path series = folder_ / extension.substr(1);
+    fs::create_directories(series);
+    PointCloud cloud;
+    std::string pcd =
+        "VERSION .7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 1\nWIDTH 20\n"
+        "HEIGHT 1\nVIEWPOINT 0 0 0 1 0 0 0\nPOINTS 20\nDATA binary\n";
+    for (int k = 0; k < 20; ++k) cloud.points.push_back(random_.vector(50.0).cast<float>());
+    cloud.points[3].x() = std::numeric_limits<float>::quiet_NaN();
+    for (const auto& point : cloud.points) {
+      pcd.append(reinterpret_cast<const char*>(point.data()), 3 * sizeof(float));
+    }
+    for (const char* name : {"12.5", "13.25"}) {
+      const fs::path file = series / (name + extension);
+      if (extension == ".ply") writeLabeledPly(file, cloud, std::vector<int>(20, 0));
+      if (extension == ".pcd") test::writeFile(file, pcd);
+    }
+    const ImportPlan import =
+        planImport(extension == ".ply" ? DatasetFormat::kPly : DatasetFormat::kPcd, series);
+    ASSERT_EQ(import.frames.size(), 2u);
+    EXPECT_EQ(import.frames[0].timestamp, 12.5);
+    EXPECT_EQ(import.frames[1].timestamp, 13.25);
+    runImport(import, rawlog(), {});
+    const auto observations = readAll<CObservationPointCloud>(rawlog());
+    ASSERT_EQ(observations.size(), 2u);
+    ASSERT_EQ(observations[1]->pointcloud->size(), 19u);
+    for (std::size_t i = 0; i < 19; ++i) {
+      Eigen::Vector3f point;
+      observations[1]->pointcloud->getPointFast(i, point.x(), point.y(), point.z());
+      EXPECT_EQ(point, cloud.points[i < 3 ? i : i + 1]);
+    }
+  }
+}
+
+TEST_F(Import, CloudSeriesWithoutTimesCountFramesByTheLastNumber) {
+  addText("lidar2_0007.pcd", "");
+  addText("lidar2_0008.pcd", "");
+  addText("poses.tum", "1 0 0 0 0 0 0 1\n");
+  ImportOptions options;
+  options.start_time = 100.0;
+  options.poses = folder_ / "poses.tum";
+  const ImportPlan import = plan(DatasetFormat::kPcd, options);
+  ASSERT_EQ(import.frames.size(), 2u);
+  EXPECT_NEAR(import.frames[0].timestamp, 100.7, 1e-9);
+  EXPECT_EQ(import.ground_truth.size(), 1u);
+  EXPECT_THROW(runImport(import, rawlog(), {}), std::runtime_error);  // the files are no clouds
+  addText("lidar2_0010.pcd", "");
+  EXPECT_NE(planError(DatasetFormat::kPcd).find("number 9 missing before lidar2_0010.pcd"),
+            std::string::npos);
 }
 
 TEST_F(Import, DamagedOrWrongImagesAreNamedAndLeaveNoRawlog) {

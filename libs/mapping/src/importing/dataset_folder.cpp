@@ -25,9 +25,13 @@ bool endsWith(const std::string& text, const std::string& suffix) {
          text.compare(text.size() - suffix.size(), suffix.size(), suffix) == 0;
 }
 
-/// First number in a name; −1 if there is none that fits.
-long numberIn(const std::string& name) {
-  const std::size_t begin = name.find_first_of(kDigits);
+/// First or last number in a name; −1 if there is none that fits.
+long numberIn(const std::string& name, NumberIn which) {
+  std::size_t begin = name.find_first_of(kDigits);
+  if (which == NumberIn::kLast && begin != std::string::npos) {
+    const std::size_t end = name.find_last_of(kDigits);
+    begin = name.find_last_not_of(kDigits, end) + 1;
+  }
   if (begin == std::string::npos) return -1;
   long number = -1;
   std::from_chars(name.data() + begin, name.data() + name.size(), number);
@@ -42,13 +46,15 @@ Eigen::Isometry3d opticalFromBody() {
   return optical_from_body;
 }
 
-std::map<long, fs::path> numberedFiles(const fs::path& folder, const std::string& suffix) {
+std::map<long, fs::path> numberedFiles(const fs::path& folder, const std::string& suffix,
+                                       NumberIn which) {
   if (!fs::is_directory(folder)) throw std::runtime_error(folder.string() + ": is no folder");
   std::map<long, fs::path> files;
   for (const auto& entry : fs::directory_iterator(folder)) {
     const std::string name = entry.path().filename().string();
-    const long number = numberIn(name);
-    if (number < 0 || !endsWith(name, suffix)) continue;
+    if (!endsWith(name, suffix)) continue;
+    const long number = numberIn(name.substr(0, name.size() - suffix.size()), which);
+    if (number < 0) continue;
     const auto [other, is_new] = files.emplace(number, entry.path());
     if (!is_new) {
       throw std::runtime_error(folder.string() + ": " + name + " and " +

@@ -17,10 +17,13 @@ namespace opp::mapping {
 /// Pose of the body (x forward, y left, z up) in the optical frame (x right, y down, z forward).
 Eigen::Isometry3d opticalFromBody();
 
-/// Files of a folder whose name ends in `suffix`, by the first number in their name.
+enum class NumberIn { kFirst, kLast };
+
+/// Files of a folder whose name ends in `suffix`, by the first or last number in the rest of it.
 /// \throws std::runtime_error if the folder is none, holds no such file, or two have one number.
 std::map<long, std::filesystem::path> numberedFiles(const std::filesystem::path& folder,
-                                                    const std::string& suffix);
+                                                    const std::string& suffix,
+                                                    NumberIn which = NumberIn::kFirst);
 
 /// Adds the numbered files as frames at start_time + number / rate. \throws std::runtime_error that
 /// names a missing number, unless options.skip_missing.

@@ -5,6 +5,7 @@
 #include "opp/mapping/importing/import_plan.h"
 
 #include <filesystem>
+#include <string>
 
 // One function for each form of data set: see planImport.
 
@@ -15,5 +16,8 @@ ImportPlan planIclNuim(const std::filesystem::path& folder, const ImportOptions&
 ImportPlan planSevenScenes(const std::filesystem::path& folder, const ImportOptions& options);
 ImportPlan planRedwood(const std::filesystem::path& folder, const ImportOptions& options);
 ImportPlan planKitti(const std::filesystem::path& folder, const ImportOptions& options);
+/// \param extension ".pcd" or ".ply".
+ImportPlan planCloudSeries(const std::filesystem::path& folder, const std::string& extension,
+                           const ImportOptions& options);
 
 }  // namespace opp::mapping

@@ -24,8 +24,10 @@ DatasetFormat datasetFormatFromName(std::string_view name) {
   if (name == "7scenes") return DatasetFormat::kSevenScenes;
   if (name == "redwood") return DatasetFormat::kRedwood;
   if (name == "kitti") return DatasetFormat::kKitti;
+  if (name == "pcd") return DatasetFormat::kPcd;
+  if (name == "ply") return DatasetFormat::kPly;
   throw std::invalid_argument("'" + std::string(name) +
-                              "' is none of tum, icl-nuim, 7scenes, redwood, kitti");
+                              "' is none of tum, icl-nuim, 7scenes, redwood, kitti, pcd, ply");
 }
 
 ImportPlan planImport(DatasetFormat format, const std::filesystem::path& folder,
@@ -49,6 +51,10 @@ ImportPlan planImport(DatasetFormat format, const std::filesystem::path& folder,
       return planRedwood(folder, options);
     case DatasetFormat::kKitti:
       return planKitti(folder, options);
+    case DatasetFormat::kPcd:
+      return planCloudSeries(folder, ".pcd", options);
+    case DatasetFormat::kPly:
+      return planCloudSeries(folder, ".ply", options);
   }
   throw std::invalid_argument("import: unknown format");
 }

@@ -56,7 +56,7 @@ void setTimes(const fs::path& file, const std::map<long, fs::path>& files,
 
 ImportPlan planKitti(const fs::path& folder, const ImportOptions& options) {
   ImportPlan plan;
-  plan.is_depth = false;
+  plan.kind = FrameKind::kKittiPoints;
   const auto files = numberedFiles(subfolderIfAny(folder, "velodyne"), ".bin");
   addNumberedFrames(files, kLidarRate, options, plan);
   const fs::path times = folder / "times.txt";

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "opp/mapping/importing/run_import.h"
 
+#include "opp/mapping/io/cloud_file.h"
 #include "opp/mapping/io/gray16_png.h"
 #include "opp/mapping/io/rawlog_writer.h"
 
@@ -68,6 +69,14 @@ std::vector<Eigen::Vector3f> readKittiPoints(const fs::path& file) {
   return points;
 }
 
+/// The measured points of a cloud file, bit by bit.
+std::vector<Eigen::Vector3f> readCloudPoints(const fs::path& file) {
+  std::vector<Eigen::Vector3f> points = readCloudFile(file).points;
+  const auto is_lost = [](const Eigen::Vector3f& point) { return !point.allFinite(); };
+  points.erase(std::remove_if(points.begin(), points.end(), is_lost), points.end());
+  return points;
+}
+
 }  // namespace
 
 void runImport(const ImportPlan& plan, const fs::path& rawlog,
@@ -77,11 +86,17 @@ void runImport(const ImportPlan& plan, const fs::path& rawlog,
   for (const ImportFrame& frame : plan.frames) {
     RawlogStamp stamp;
     stamp.timestamp = frame.timestamp;
-    stamp.label = plan.is_depth ? "DEPTH" : "LIDAR";
-    if (plan.is_depth) {
-      writer.write(stamp, readDepth(frame.file, plan));
-    } else {
-      writer.write(stamp, readKittiPoints(frame.file));
+    stamp.label = plan.kind == FrameKind::kDepthPng ? "DEPTH" : "LIDAR";
+    switch (plan.kind) {
+      case FrameKind::kDepthPng:
+        writer.write(stamp, readDepth(frame.file, plan));
+        break;
+      case FrameKind::kKittiPoints:
+        writer.write(stamp, readKittiPoints(frame.file));
+        break;
+      case FrameKind::kCloudFile:
+        writer.write(stamp, readCloudPoints(frame.file));
+        break;
     }
     if (progress) progress(++done);
   }

@@ -14,9 +14,9 @@
 namespace opp::mapping {
 
 /// Forms of public data sets.
-enum class DatasetFormat { kTum, kIclNuim, kSevenScenes, kRedwood, kKitti };
+enum class DatasetFormat { kTum, kIclNuim, kSevenScenes, kRedwood, kKitti, kPcd, kPly };
 
-/// "tum", "icl-nuim", "7scenes", "redwood" or "kitti".
+/// "tum", "icl-nuim", "7scenes", "redwood", "kitti", "pcd" or "ply".
 /// \throws std::invalid_argument for other names.
 DatasetFormat datasetFormatFromName(std::string_view name);
 
@@ -32,6 +32,9 @@ struct ImportOptions {
   double start_time = 1.6e9;
 };
 
+/// How the frames of a set are stored.
+enum class FrameKind { kDepthPng, kKittiPoints, kCloudFile };
+
 /// One frame to import.
 struct ImportFrame {
   double timestamp = 0.0;  ///< Unix time [s]
@@ -40,7 +43,7 @@ struct ImportFrame {
 
 /// All that is known of a data set before its frames are read.
 struct ImportPlan {
-  bool is_depth = true;  ///< depth images; else point clouds
+  FrameKind kind = FrameKind::kDepthPng;
   std::vector<ImportFrame> frames;
   CameraIntrinsics intrinsics;  ///< depth only
   double range_unit = 0.0;      ///< [m]; depth only
@@ -58,6 +61,10 @@ struct ImportPlan {
 /// - redwood: depth/N*.png or N*.png at 30 Hz; *.log or *-traj.txt; 1 mm.
 /// - kitti: velodyne/N.bin (or N.bin), times.txt or 10 Hz; with `poses`, calib.txt for the pose of
 ///   the lidar on the camera.
+/// - pcd, ply: a series of clouds in the frame of the body. A name that is a number with decimals
+/// is
+///   the time (1305031102.175304.pcd), else the last number in the name counts frames at 10 Hz.
+///   `poses`: TUM text, map_from_body.
 /// Numbered frames must be without gaps: a missing number is a missing file. Poses of the optical
 /// camera frame are turned into those of the body; the map frame is that of the set (kitti: the
 /// first lidar frame).
