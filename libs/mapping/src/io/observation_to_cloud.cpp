@@ -125,7 +125,8 @@ bool ObservationConverter::isScan(const mrpt::obs::CObservation& observation) {
          dynamic_cast<const CObservationVelodyneScan*>(&observation) != nullptr;
 }
 
-PointCloud ObservationConverter::convert(mrpt::obs::CObservation& observation) {
+PointCloud ObservationConverter::convert(mrpt::obs::CObservation& observation,
+                                         ImagesAfterwards images) {
   load(observation, images_directory_);
   PointCloud cloud;
   if (const auto* range_scan = dynamic_cast<CObservation3DRangeScan*>(&observation)) {
@@ -140,7 +141,7 @@ PointCloud ObservationConverter::convert(mrpt::obs::CObservation& observation) {
   } else {
     throw std::runtime_error("not a 3D observation");
   }
-  observation.unload();
+  if (images == ImagesAfterwards::kFree) observation.unload();
   return cloud;
 }
 

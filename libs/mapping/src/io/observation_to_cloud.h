@@ -14,6 +14,9 @@
 
 namespace opp::mapping {
 
+/// What happens to images outside of the rawlog once they have been used.
+enum class ImagesAfterwards { kFree, kKeep };
+
 /// Turns 3D observations of MRPT into clouds in the body frame.
 class ObservationConverter {
  public:
@@ -24,9 +27,10 @@ class ObservationConverter {
   /// Whether observations of this kind are 3D observations, with or without contents.
   static bool isScan(const mrpt::obs::CObservation& observation);
 
-  /// The cloud of a 3D observation; frees images that it loaded. \throws std::runtime_error: the
+  /// The cloud of a 3D observation. \throws std::runtime_error: the
   /// observation holds no usable measurement; the message says why, without naming the file.
-  PointCloud convert(mrpt::obs::CObservation& observation);
+  PointCloud convert(mrpt::obs::CObservation& observation,
+                     ImagesAfterwards images = ImagesAfterwards::kFree);
 
  private:
   std::filesystem::path images_directory_;

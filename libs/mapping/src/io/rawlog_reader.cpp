@@ -7,33 +7,16 @@
 #include "io/observation_to_cloud.h"
 #include "io/odometry_accumulator.h"
 #include "io/rawlog_stream.h"
+#include "io/scan_selection.h"
 
 #include <mrpt/obs/CObservationComment.h>
 #include <mrpt/obs/CObservationOdometry.h>
 
-#include <regex>
 #include <sstream>
 #include <stdexcept>
 
 namespace opp::mapping {
 namespace {
-
-std::regex labelPattern(const std::string& expression) {
-  try {
-    return std::regex(expression);
-  } catch (const std::regex_error& error) {
-    throw std::invalid_argument("sensor label '" + expression +
-                                "' is not a regular expression: " + error.what());
-  }
-}
-
-void check(const RawlogOptions& options) {
-  if (options.every == 0) throw std::invalid_argument("every = 0; it must be at least 1");
-  if (options.from_index >= options.to_index) {
-    throw std::invalid_argument("from-index " + std::to_string(options.from_index) +
-                                " must be below to-index " + std::to_string(options.to_index));
-  }
-}
 
 std::string listOf(const std::map<std::string, std::size_t>& counts) {
   std::ostringstream text;
@@ -49,7 +32,7 @@ struct RawlogReader::Impl {
   Impl(const std::filesystem::path& rawlog, RawlogOptions wanted)
       : file(rawlog),
         options(std::move(wanted)),
-        label(labelPattern(options.sensor_label)),
+        selection(options),
         stream(rawlog),
         converter(options.images_directory.empty() ? imagesDirectoryOf(rawlog)
                                                    : options.images_directory) {}
@@ -57,24 +40,17 @@ struct RawlogReader::Impl {
   std::optional<RawlogEntry> read(const RawlogItem& item);
   std::optional<RawlogEntry> readObservation(mrpt::obs::CObservation& observation);
   std::optional<RawlogEntry> readScan(mrpt::obs::CObservation& observation);
-  bool isSelected(std::size_t index) const;
   std::string whyNothing() const;
 
   std::filesystem::path file;
   RawlogOptions options;
-  std::regex label;
+  ScanSelection selection;
   RawlogStream stream;
   ObservationConverter converter;
   OdometryAccumulator odometry;
   std::optional<RawlogEntry> after_odometry;  ///< what the action just delivered led to
-  std::size_t next_index = 0;
   RawlogCounts counts;
 };
-
-bool RawlogReader::Impl::isSelected(std::size_t index) const {
-  return index >= options.from_index && index < options.to_index &&
-         (index - options.from_index) % options.every == 0;
-}
 
 std::optional<RawlogEntry> RawlogReader::Impl::read(const RawlogItem& item) {
   if (item.action) {
@@ -101,19 +77,12 @@ std::optional<RawlogEntry> RawlogReader::Impl::readObservation(
 }
 
 std::optional<RawlogEntry> RawlogReader::Impl::readScan(mrpt::obs::CObservation& observation) {
-  ++counts.labels[observation.sensorLabel];
-  const bool wanted =
-      options.sensor_label.empty() || std::regex_match(observation.sensorLabel, label);
-  const std::size_t index = next_index;
-  if (wanted) ++next_index;
-  if (!wanted || !isSelected(index)) {
-    ++counts.deselected;
-    return std::nullopt;
-  }
+  const std::optional<std::size_t> index = selection.take(observation, counts);
+  if (!index) return std::nullopt;
   Scan scan;
   scan.timestamp = toSeconds(observation.timestamp);
   scan.sensor_label = observation.sensorLabel;
-  scan.index = index;
+  scan.index = *index;
   try {
     scan.cloud_in_body = converter.convert(observation);
   } catch (const std::exception& error) {
@@ -140,7 +109,6 @@ std::string RawlogReader::Impl::whyNothing() const {
 }
 
 RawlogReader::RawlogReader(const std::filesystem::path& file, RawlogOptions options) {
-  check(options);
   impl_ = std::make_unique<Impl>(file, std::move(options));
 }
 
