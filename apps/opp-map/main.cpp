@@ -1,6 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The opp-mapping authors
 // SPDX-License-Identifier: BSD-3-Clause
 // opp-map: rawlog in, map out.
+#include "opp/mapping/export/planar_exports.h"
+#include "opp/mapping/export/simplemap.h"
 #include "opp/mapping/io/atomic_file.h"
 #include "opp/mapping/io/output_folder.h"
 #include "opp/mapping/io/parameters.h"
@@ -18,6 +20,7 @@
 
 #include <chrono>
 #include <filesystem>
+#include <map>
 #include <ostream>
 
 namespace {
@@ -61,13 +64,29 @@ void writeOccupancyMap(const MapOptions& options, const opp::mapping::Mapper& ma
 void writePlanarMap(const MapOptions& options, const opp::mapping::Mapper& mapper,
                     opp::mapping::RunReport& report, const std::filesystem::path& folder) {
   const auto start = std::chrono::steady_clock::now();
-  const opp::mapping::PlanarMap map = opp::mapping::planarMapOf(mapper.map(), options.params.planar);
+  const opp::mapping::PlanarMap map =
+      opp::mapping::planarMapOf(mapper.map(), options.params.planar);
   opp::mapping::writePlanarMap(folder / "planar_map.json", map);
   report.counts["planes"] = map.planes.size();
   report.counts["lines"] = map.lines.size();
   report.counts["corners"] = map.corners.size();
   report.counts["families"] = map.families.size();
   report.seconds["planar_map"] = secondsSince(start);
+  const auto export_start = std::chrono::steady_clock::now();
+  opp::mapping::writePlanarExports(folder, map, mapper.trajectory(), options.params.planar);
+  report.seconds["export"] = secondsSince(export_start);
+}
+
+void writeKeyframes(const MapOptions& options, const opp::mapping::Mapper& mapper,
+                    opp::mapping::RunReport& report, const std::filesystem::path& folder) {
+  const auto start = std::chrono::steady_clock::now();
+  std::map<std::size_t, Eigen::Isometry3d> keyframes;
+  for (const opp::mapping::Keyframe& keyframe : mapper.map().keyframes) {
+    keyframes[keyframe.features.scan_index] = keyframe.map_from_body;
+  }
+  opp::mapping::writeSimplemap(folder / "map.simplemap", options.rawlog, options.selection,
+                               keyframes);
+  report.seconds["simplemap"] = secondsSince(start);
 }
 
 void writeResults(const MapOptions& options, const opp::mapping::Mapper& mapper,
@@ -87,6 +106,7 @@ void run(opp::apps::CommandLine& line) {
   opp::mapping::RunReport report;
   const opp::mapping::Mapper mapper = buildMap(options, report);
   writePlanarMap(options, mapper, report, output.path());
+  writeKeyframes(options, mapper, report, output.path());
   if (options.octomap) writeOccupancyMap(options, mapper, report, output.path());
   writeResults(options, mapper, report, output.path());
   output.commit();
