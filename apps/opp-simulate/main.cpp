@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The opp-mapping authors
 // SPDX-License-Identifier: BSD-3-Clause
+#include "opp/mapping/core/move_planar_map.h"
 #include "opp/mapping/io/planar_map_json.h"
 #include "opp/mapping/io/rawlog_writer.h"
 #include "opp/mapping/io/tum_trajectory.h"
@@ -45,7 +46,9 @@ PlanarMap truthOf(const Simulator& simulator, const GroundTruthParams& params,
                   const SimulatedFrame& frame) {
   GroundTruth truth(simulator.scene().world, params);
   truth.add(frame, simulator.options().body_from_sensor);
-  return transformed(frame.map_from_body.inverse(), truth.map(), "sensor");
+  PlanarMap map = movedPlanarMap(frame.map_from_body.inverse(), truth.map());
+  map.frame = "sensor";
+  return map;
 }
 
 fs::path frameFile(const fs::path& folder, int index) {

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The opp-mapping authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "opp/mapping/core/trajectory.h"
-#include "opp/mapping/evaluation/move_planar_map.h"
+#include "opp/mapping/core/move_planar_map.h"
 #include "opp/mapping/io/cloud_file.h"
 #include "opp/mapping/io/planar_map_json.h"
 #include "opp/mapping/io/tum_trajectory.h"

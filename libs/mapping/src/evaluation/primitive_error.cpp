@@ -3,7 +3,7 @@
 #include "opp/mapping/evaluation/primitive_error.h"
 
 #include "opp/geometry/constants.h"
-#include "opp/mapping/evaluation/move_planar_map.h"
+#include "opp/mapping/core/move_planar_map.h"
 
 #include "evaluation/primitive_matching.h"
 

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "opp/mapping/export/floorplan_svg.h"
 
-#include "opp/mapping/evaluation/move_planar_map.h"
+#include "opp/mapping/core/move_planar_map.h"
 #include "opp/mapping/io/atomic_file.h"
 #include "opp/mapping/planar/level_frame.h"
 

@@ -3,7 +3,7 @@
 #include "opp/mapping/export/scene_file.h"
 
 #include "opp/geometry/constants.h"
-#include "opp/mapping/evaluation/move_planar_map.h"
+#include "opp/mapping/core/move_planar_map.h"
 #include "opp/mapping/io/atomic_file.h"
 #include "opp/mapping/planar/level_frame.h"
 

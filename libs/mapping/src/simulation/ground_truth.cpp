@@ -199,29 +199,4 @@ PlanarMap GroundTruth::map() const {
   return map;
 }
 
-PlanarMap transformed(const Eigen::Isometry3d& b_from_a, PlanarMap map_in_a,
-                      const std::string& frame) {
-  PlanarMap map = std::move(map_in_a);
-  map.frame = frame;
-  const auto move = [&](Eigen::Vector3d& point) { point = b_from_a * point; };
-  for (PlanarMapPlane& plane : map.planes) {
-    plane.plane = opp::transformed(b_from_a, plane.plane);
-    move(plane.centroid);
-    for (PlanarPolygon& polygon : plane.polygons) {
-      for (auto& point : polygon.outer) move(point);
-      for (auto& hole : polygon.holes) {
-        for (auto& point : hole) move(point);
-      }
-    }
-  }
-  for (PlanarMapFamily& family : map.families) family.normal = b_from_a.linear() * family.normal;
-  for (PlanarMapLine& line : map.lines) move(line.start), move(line.end);
-  for (PlanarMapCorner& corner : map.corners) {
-    move(corner.position);
-    corner.orientation = Eigen::Quaterniond(b_from_a.linear()) * corner.orientation;
-    corner.covariance = b_from_a.linear() * corner.covariance * b_from_a.linear().transpose();
-  }
-  return map;
-}
-
 }  // namespace opp::mapping

@@ -64,8 +64,4 @@ class GroundTruth {
   std::unique_ptr<Impl> impl_;
 };
 
-/// The map expressed in another frame, which gets the name \p frame.
-PlanarMap transformed(const Eigen::Isometry3d& b_from_a, PlanarMap map_in_a,
-                      const std::string& frame);
-
 }  // namespace opp::mapping

@@ -8,9 +8,8 @@
 
 namespace opp::mapping {
 
-/// The same map expressed in frame b: planes, polygons, lines, corners and families. Covariances of
-/// planes and corners are left as they are: evaluation does not use them, and they would need the
-/// uncertainty of b_from_a.
+/// The same map expressed in frame b, with all geometry and covariances; b_from_a is taken as exact.
+/// `frame` keeps its name.
 PlanarMap movedPlanarMap(const Eigen::Isometry3d& b_from_a, PlanarMap map_in_a);
 
 }  // namespace opp::mapping
