@@ -55,6 +55,17 @@ struct ThreadsFlag {
   mutable TCLAP::ValueArg<int> argument;  // mutable: getValue of TCLAP 1.2 is not const
 };
 
+/// Sets the parameter that a flag names, "section.key=value".
+/// \throws UsageError that names the flag, if there is no such parameter or value.
+template <typename Composite>
+void setFromFlag(const std::string& assignment, const std::string& flag, Composite& params) {
+  try {
+    mapping::setParameter(assignment, params, flag);
+  } catch (const std::invalid_argument& error) {
+    throw UsageError(error.what());
+  }
+}
+
 /// -c FILE.ini and --set section.key=value.
 struct ParameterFlags {
   explicit ParameterFlags(CommandLine& line)
@@ -68,12 +79,7 @@ struct ParameterFlags {
   template <typename Composite>
   void applyTo(Composite& params) {
     if (config.isSet()) mapping::loadParameters(config.getValue(), params);
-    try {
-      for (const std::string& assignment : set.getValue())
-        mapping::setParameter(assignment, params);
-    } catch (const std::invalid_argument& error) {
-      throw UsageError(error.what());
-    }
+    for (const std::string& assignment : set.getValue()) setFromFlag(assignment, "--set", params);
   }
 
   TCLAP::ValueArg<std::string> config;

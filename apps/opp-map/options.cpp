@@ -4,9 +4,22 @@
 
 #include "common/flags.h"
 
-#include <limits>
+#include <regex>
 
 namespace opp::apps {
+namespace {
+
+/// The text, if it is a regular expression. \throws UsageError otherwise.
+std::string checkedExpression(const std::string& flag, const std::string& text) {
+  try {
+    const std::regex compiled(text);
+    return text;
+  } catch (const std::regex_error& error) {
+    throw UsageError(flag + " " + text + ": no regular expression: " + error.what());
+  }
+}
+
+}  // namespace
 
 MapOptions parseOptions(CommandLine& line) {
   InputFlag input(line, "Rawlog to map");
@@ -27,9 +40,9 @@ MapOptions parseOptions(CommandLine& line) {
                                      "Predicted poses of the body, map_from_body", false, "",
                                      "FILE.tum", line);
   TCLAP::SwitchArg no_octomap("", "no-octomap", "Write no map.ot and map.bt", line);
-  TCLAP::ValueArg<double> resolution("", "resolution",
-                                     "Edge of an OctoMap voxel [m]; sets occupancy.resolution",
-                                     false, 0.05, "metres", line);
+  TCLAP::ValueArg<std::string> resolution("", "resolution",
+                                          "Edge of an OctoMap voxel; sets occupancy.resolution",
+                                          false, "", "metres", line);
   ForceFlag force(line);
   ThreadsFlag threads(line);
   QuietFlag quiet(line);
@@ -38,15 +51,14 @@ MapOptions parseOptions(CommandLine& line) {
   MapOptions options;
   options.rawlog = input.getValue();
   options.output = output.getValue();
-  options.selection.sensor_label = label.getValue();
+  options.selection.sensor_label = checkedExpression("--sensor-label", label.getValue());
   options.selection.from_index = static_cast<std::size_t>(from.getValue());
   if (to.isSet()) options.selection.to_index = static_cast<std::size_t>(to.getValue());
   options.selection.every = static_cast<std::size_t>(every.getValue());
   if (poses.isSet()) options.initial_poses = poses.getValue();
   parameters.applyTo(options.params);
   if (resolution.isSet()) {
-    mapping::setParameter("occupancy.resolution=" + std::to_string(resolution.getValue()),
-                          options.params, "--resolution");
+    setFromFlag("occupancy.resolution=" + resolution.getValue(), "--resolution", options.params);
   }
   options.octomap = !no_octomap.getValue();
   options.force = force.getValue();
