@@ -66,15 +66,10 @@ void Coverage::forEachSeen(
   }
 }
 
-void Coverage::appendRuns(std::vector<Polygon2d>& runs) const {
+void Coverage::addTo(CellMask& mask) const {
   for (int v = 0; v < size_.y(); ++v) {
     for (int u = 0; u < size_.x(); ++u) {
-      if (count(u, v) == 0) continue;
-      const int begin = u;
-      while (count(u, v) > 0) ++u;
-      const Eigen::Vector2d low = cell_ * (first_ + Eigen::Vector2i(begin, v)).cast<double>();
-      const Eigen::Vector2d high = cell_ * (first_ + Eigen::Vector2i(u, v + 1)).cast<double>();
-      runs.push_back({{low, {high.x(), low.y()}, high, {low.x(), high.y()}}, {}});
+      if (count(u, v) > 0) mask.insert(first_ + Eigen::Vector2i(u, v));
     }
   }
 }

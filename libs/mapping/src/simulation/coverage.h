@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "cell_mask.h"
 #include "plane_coordinates.h"
 
 #include <Eigen/Core>
@@ -25,8 +26,10 @@ class Coverage {
   bool seenNear(const Eigen::Vector3d& point) const;
   /// Calls `visit(centre, pixels)` for each seen cell, row by row.
   void forEachSeen(const std::function<void(const Eigen::Vector3d&, std::uint32_t)>& visit) const;
-  /// Seen cells as rectangles, one for each run of a row.
-  void appendRuns(std::vector<Polygon2d>& runs) const;
+  Eigen::Vector2i firstCell() const { return first_; }  ///< of the raster's rectangle
+  Eigen::Vector2i lastCell() const { return first_ + size_ - Eigen::Vector2i::Ones(); }
+  /// Adds the seen cells to a set that includes the raster's rectangle.
+  void addTo(CellMask& mask) const;
   const PlaneCoordinates& coordinates() const { return coordinates_; }
 
  private:

@@ -74,7 +74,7 @@ void readPath(const SceneSection& section, Scene& scene) {
   scene.motion.jitter_position = section.number("jitter_position", scene.motion.jitter_position);
   scene.motion.jitter_angle = section.angle("jitter_angle", scene.motion.jitter_angle);
   validate(scene.motion);
-  for (const auto& v : section.list("waypoint", 5)) {
+  for (const auto& v : section.list("waypoint", 3, 2)) {
     scene.waypoints.push_back({{v[0], v[1], v[2]}, v[3], v[4]});
   }
 }

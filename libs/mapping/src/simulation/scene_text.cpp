@@ -48,29 +48,37 @@ bool SceneSection::has(const std::string& key) const {
   return false;
 }
 
-std::vector<double> SceneSection::parsed(const SceneLine& line, std::size_t count) const {
+double SceneSection::parsedNumber(const SceneLine& line, const std::string& word) const {
+  std::size_t used = 0;
+  double value = 0.0;
+  try {
+    value = std::stod(word, &used);
+  } catch (const std::logic_error&) {
+    used = 0;
+  }
+  if (used != word.size() || !std::isfinite(value)) {
+    fail(line.line, "'" + line.key + "': '" + word + "' is not a number");
+  }
+  return value;
+}
+
+std::vector<double> SceneSection::parsed(const SceneLine& line, std::size_t lengths,
+                                         std::size_t angles) const {
   std::vector<double> result;
   std::istringstream words(line.value);
   for (std::string word; words >> word;) {
-    if ((word == "deg" || word == "rad") && !result.empty()) {
-      if (word == "deg") result.back() = degToRad(result.back());
-      continue;
+    result.push_back(parsedNumber(line, word));
+    if (result.size() <= lengths) continue;
+    std::string unit;
+    words >> unit;
+    if (unit != "deg" && unit != "rad") {
+      fail(line.line, "'" + line.key + "': the angle " + word + " needs 'deg' or 'rad'");
     }
-    std::size_t used = 0;
-    double value = 0.0;
-    try {
-      value = std::stod(word, &used);
-    } catch (const std::logic_error&) {
-      used = 0;
-    }
-    if (used != word.size() || !std::isfinite(value)) {
-      fail(line.line, "'" + line.key + "': '" + word + "' is not a number");
-    }
-    result.push_back(value);
+    if (unit == "deg") result.back() = degToRad(result.back());
   }
-  if (result.size() != count) {
-    fail(line.line, "'" + line.key + "' needs " + std::to_string(count) + " numbers, has " +
-                        std::to_string(result.size()));
+  if (result.size() != lengths + angles) {
+    fail(line.line, "'" + line.key + "' needs " + std::to_string(lengths + angles) +
+                        " numbers, has " + std::to_string(result.size()));
   }
   return result;
 }
@@ -78,7 +86,7 @@ std::vector<double> SceneSection::parsed(const SceneLine& line, std::size_t coun
 std::vector<double> SceneSection::numbers(const std::string& key, std::size_t count) const {
   const SceneLine* line = find(key);
   if (line == nullptr) fail("'" + key + "' is missing");
-  return parsed(*line, count);
+  return parsed(*line, count, 0);
 }
 
 double SceneSection::number(const std::string& key, double otherwise) const {
@@ -97,12 +105,7 @@ Eigen::Vector3d SceneSection::vector3(const std::string& key) const {
 
 double SceneSection::angle(const std::string& key, double otherwise) const {
   const SceneLine* line = find(key);
-  if (line == nullptr) return otherwise;
-  if (line->value.find("deg") == std::string::npos &&
-      line->value.find("rad") == std::string::npos) {
-    fail(line->line, "'" + key + "' is an angle and needs 'deg' or 'rad'");
-  }
-  return parsed(*line, 1)[0];
+  return line == nullptr ? otherwise : parsed(*line, 0, 1)[0];
 }
 
 std::string SceneSection::text(const std::string& key, const std::string& otherwise) const {
@@ -110,13 +113,13 @@ std::string SceneSection::text(const std::string& key, const std::string& otherw
   return line == nullptr ? otherwise : line->value;
 }
 
-std::vector<std::vector<double>> SceneSection::list(const std::string& key,
-                                                    std::size_t count) const {
+std::vector<std::vector<double>> SceneSection::list(const std::string& key, std::size_t lengths,
+                                                    std::size_t angles) const {
   std::vector<std::vector<double>> result;
   for (const SceneLine& line : lines_) {
     if (line.key != key) continue;
     line.read = true;
-    result.push_back(parsed(line, count));
+    result.push_back(parsed(line, lengths, angles));
   }
   return result;
 }

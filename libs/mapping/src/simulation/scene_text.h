@@ -36,9 +36,9 @@ class SceneSection {
   /// Angle with its unit [rad].
   double angle(const std::string& key, double otherwise) const;
   std::string text(const std::string& key, const std::string& otherwise) const;
-  /// Values of a key that may be given many times, each as `count` numbers. A number may be
-  /// followed by deg or rad; it is [rad] then.
-  std::vector<std::vector<double>> list(const std::string& key, std::size_t count) const;
+  /// Values of a key that may be given many times: numbers, then angles with their units [rad].
+  std::vector<std::vector<double>> list(const std::string& key, std::size_t lengths,
+                                        std::size_t angles = 0) const;
   /// \throws std::invalid_argument that names a line nobody asked for.
   void requireAllRead() const;
   /// std::invalid_argument with source and line of the section.
@@ -46,7 +46,8 @@ class SceneSection {
 
  private:
   const SceneLine* find(const std::string& key) const;
-  std::vector<double> parsed(const SceneLine& line, std::size_t count) const;
+  double parsedNumber(const SceneLine& line, const std::string& word) const;
+  std::vector<double> parsed(const SceneLine& line, std::size_t lengths, std::size_t angles) const;
   [[noreturn]] void fail(int line, const std::string& what) const;
 
   std::string source_;

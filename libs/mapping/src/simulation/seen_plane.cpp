@@ -3,6 +3,7 @@
 #include "seen_plane.h"
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 
 namespace opp::mapping {
@@ -10,6 +11,7 @@ namespace {
 
 /// Coordinates of faces that were built to be coplanar differ by rounding only.
 constexpr double kSamePlane = 1e-7;
+constexpr double kSliver = 1e-6;  ///< polygons below are rounding where outlines meet [m²]
 
 bool samePlane(const Plane& a, const Plane& b) {
   return (a.normal() - b.normal()).norm() < kSamePlane && std::abs(a.d() - b.d()) < kSamePlane;
@@ -79,20 +81,25 @@ std::vector<SeenPlane> seenPlanes(const Geos& geos, const World& world, const Se
 
 std::vector<Polygon2d> seenPolygons(const Geos& geos, const SeenPlane& plane,
                                     const GroundTruthParams& params) {
-  std::vector<Polygon2d> runs;
-  for (const Coverage* coverage : plane.coverages) coverage->appendRuns(runs);
+  Eigen::Vector2i low = plane.coverages[0]->firstCell(), high = plane.coverages[0]->lastCell();
+  for (const Coverage* coverage : plane.coverages) {
+    low = low.cwiseMin(coverage->firstCell());
+    high = high.cwiseMax(coverage->lastCell());
+  }
+  CellMask mask(low, high);
+  for (const Coverage* coverage : plane.coverages) coverage->addTo(mask);
+  const int radius = static_cast<int>(std::lround(params.closing / params.cell));
   std::vector<Geos::Geometry> cells;
-  for (const Polygon2d& run : runs) cells.push_back(geos.polygon(run));
-  const auto h = geos.handle();
-  const auto buffered = [&](const Geos::Geometry& shape, double width) {
-    return geos.checked(GEOSBufferWithStyle_r(h, shape.get(), width, 1, GEOSBUF_CAP_SQUARE,
-                                              GEOSBUF_JOIN_MITRE, 2.0));
-  };
-  const auto seen = geos.unionOf(geos.collection(std::move(cells)));
-  const auto closed = buffered(buffered(seen, params.closing), -params.closing);
-  const auto smooth = geos.checked(GEOSTopologyPreserveSimplify_r(h, closed.get(), params.cell));
-  const auto clipped = geos.checked(GEOSIntersection_r(h, smooth.get(), plane.outline.get()));
+  for (const Polygon2d& run : mask.closed(radius).runs(params.cell)) {
+    cells.push_back(geos.polygon(run));
+  }
+  const auto closed = geos.unionOf(geos.collection(std::move(cells)));
+  const auto smooth = geos.simplify(closed, params.cell);
+  const auto clipped =
+      geos.checked(GEOSIntersection_r(geos.handle(), smooth.get(), plane.outline.get()));
   std::vector<Polygon2d> result = geos.polygonsOf(clipped);
+  const auto sliver = [](const Polygon2d& polygon) { return signedArea(polygon.outer) < kSliver; };
+  result.erase(std::remove_if(result.begin(), result.end(), sliver), result.end());
   return result;
 }
 

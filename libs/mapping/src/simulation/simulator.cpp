@@ -94,20 +94,23 @@ void Simulator::chooseTimes(double available) {
   }
 }
 
-double Simulator::pathTime(int index) const {
+double Simulator::frameTime(int index) const {
   if (index < 0 || index >= frames()) throw std::invalid_argument("no frame of this number");
-  const double time = times_[static_cast<std::size_t>(index)];
+  return times_[static_cast<std::size_t>(index)];
+}
+
+double Simulator::pathTime(int index) const {
+  const double time = frameTime(index);
   return jump_ > 0.0 && time > jump_at_ ? time + jump_ : time;
 }
 
 bool Simulator::kidnappedBefore(int index) const {
-  return jump_ > 0.0 && index > 0 && times_.at(static_cast<std::size_t>(index)) > jump_at_ &&
-         times_.at(static_cast<std::size_t>(index) - 1) <= jump_at_;
+  return jump_ > 0.0 && index > 0 && frameTime(index) > jump_at_ &&
+         frameTime(index - 1) <= jump_at_;
 }
 
 double Simulator::timestamp(int index) const {
-  return std::round((options_.start_time + times_.at(static_cast<std::size_t>(index))) * 1e6) *
-         1e-6;
+  return std::round((options_.start_time + frameTime(index)) * 1e6) * 1e-6;
 }
 
 Eigen::Isometry3d Simulator::mapFromBody(int index) const {

@@ -19,7 +19,7 @@ struct GroundTruthParams {
   static constexpr std::string_view kSection = "ground_truth";
   double cell = 0.025;
   double closing = 0.05;
-  double reach = 0.1;
+  double reach = 0.2;
   int min_pixels = 300;
   double join_gap = 0.5;
 

@@ -62,6 +62,7 @@ class Simulator {
   double duration() const {
     return times_.back() - times_.front();
   }  ///< from first to last frame [s]
+  /// Functions of a frame's number \throw std::invalid_argument if there is no such frame.
   /// Whether the body was kidnapped between the frame before and this one.
   bool kidnappedBefore(int index) const;
   Eigen::Isometry3d mapFromBody(int index) const;
@@ -70,7 +71,8 @@ class Simulator {
 
  private:
   void chooseTimes(double available);
-  double pathTime(int index) const;
+  double frameTime(int index) const;  ///< since the first frame [s]
+  double pathTime(int index) const;   ///< of the same moment, jumps counted in [s]
 
   Scene scene_;
   SimulationOptions options_;
