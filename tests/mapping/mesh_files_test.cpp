@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "opp/mapping/export/mesh_files.h"
 
+#include "opp/mapping/core/move_planar_map.h"
+
 #include "support/random.h"
 #include "support/temp_folder.h"
 
@@ -65,10 +67,37 @@ TEST(Triangulate, FillsThePolygonAndLeavesTheHole) {
 
 TEST(Triangulate, EmptyMapHasNoMesh) { EXPECT_TRUE(triangulate(PlanarMap()).empty()); }
 
-TEST(Triangulate, PolygonThatCrossesItselfIsAnError) {
+TEST(Triangulate, FillsWhatACrossingOutlineEncloses) {
   PlanarMap map = twoPlanes();
+  map.planes[0].polygons[0].holes.clear();
   std::swap(map.planes[0].polygons[0].outer[0], map.planes[0].polygons[0].outer[1]);
-  EXPECT_THROW(triangulate(map), std::runtime_error);
+  const PlaneMesh mesh = triangulate(map)[0];
+  float area = 0.0F;
+  for (const auto& [a, b, c] : mesh.triangles) {
+    const auto& v = mesh.vertices;
+    area += 0.5F * (v[b] - v[a]).cross(v[c] - v[a]).dot(mesh.normal);
+  }
+  EXPECT_NEAR(area, 8.0F, 1e-4F);  // an hourglass of two triangles in a square of 16 m²
+}
+
+TEST(Triangulate, SurvivesSpikesThatRoundingTurnsInsideOut) {
+  test::Random random(2);
+  for (int k = 0; k < 200; ++k) {
+    PlanarMap map = twoPlanes();
+    map.planes.resize(1);
+    auto& outer = map.planes[0].polygons[0].outer;
+    const Eigen::Vector3d tip = outer[0] + random.uniform(0.1, 1.0) * (outer[0] - outer[1]);
+    outer.insert(outer.begin() + 1, tip);  // there and back along the edge
+    const auto turned = movedPlanarMap(random.pose(5.0), map);
+    float area = 0.0F;
+    for (const PlaneMesh& mesh : triangulate(turned)) {
+      for (const auto& [a, b, c] : mesh.triangles) {
+        const auto& v = mesh.vertices;
+        area += 0.5F * (v[b] - v[a]).cross(v[c] - v[a]).dot(mesh.normal);
+      }
+    }
+    EXPECT_NEAR(area, 12.0F, 1e-4F) << k;
+  }
 }
 
 TEST(WritePly, StatesItsContents) {

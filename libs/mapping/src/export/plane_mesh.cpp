@@ -33,47 +33,57 @@ Color colorOf(const PlanarMapPlane& plane) {
   return kFamilyColors[static_cast<std::size_t>(plane.family) % kFamilyColors.size()];
 }
 
-/// Triangulation of one polygon; its vertices are found again by their exact coordinates.
+/// Adds polygons to a mesh; their vertices are found again by their exact coordinates.
 class PolygonTriangulator {
  public:
   PolygonTriangulator(const PlaneFrame& frame, PlaneMesh& mesh) : frame_(frame), mesh_(mesh) {}
 
   void add(const PlanarPolygon& polygon) {
-    indices_.clear();
-    Polygon2d flat{addRing(polygon.outer), {}};
-    for (const auto& hole : polygon.holes) flat.holes.push_back(addRing(hole));
-    const auto triangles = geos_.polygonsOf(geos_.triangulate(geos_.polygon(flat)));
-    for (const Polygon2d& triangle : triangles) {
-      std::array<std::uint32_t, 3> corners{};
-      for (std::size_t k = 0; k < 3; ++k) corners[k] = indexOf(triangle.outer.at(k));
-      mesh_.triangles.push_back(corners);
+    Polygon2d flat{flattened(polygon.outer), {}};
+    for (const auto& hole : polygon.holes) flat.holes.push_back(flattened(hole));
+    try {
+      add(flat);
+    } catch (const std::runtime_error&) {  // it crosses or touches itself
+      for (const Polygon2d& part : geos_.polygonsOf(geos_.untied(geos_.polygon(flat)))) add(part);
     }
   }
 
  private:
-  Ring2d addRing(const std::vector<Eigen::Vector3d>& ring) {
+  Ring2d flattened(const std::vector<Eigen::Vector3d>& ring) const {
     Ring2d flat;
-    for (const Eigen::Vector3d& vertex : ring) {
-      flat.push_back(frame_.project(vertex));
-      indices_[{flat.back().x(), flat.back().y()}] =
-          static_cast<std::uint32_t>(mesh_.vertices.size());
-      mesh_.vertices.push_back(vertex.cast<float>());
-    }
+    for (const Eigen::Vector3d& vertex : ring) flat.push_back(frame_.project(vertex));
     return flat;
   }
 
-  std::uint32_t indexOf(const Eigen::Vector2d& vertex) const {
-    const auto found = indices_.find({vertex.x(), vertex.y()});
-    if (found == indices_.end()) {
-      throw std::runtime_error(mesh_.name + " has a polygon that crosses itself");
+  void add(const Polygon2d& polygon) {
+    std::map<std::pair<double, double>, std::uint32_t> indices;
+    std::vector<Eigen::Vector3f> vertices;
+    const auto add_ring = [&](const Ring2d& ring) {
+      for (const Eigen::Vector2d& vertex : ring) {
+        const auto index = static_cast<std::uint32_t>(mesh_.vertices.size() + vertices.size());
+        indices[{vertex.x(), vertex.y()}] = index;
+        vertices.push_back(frame_.lift(vertex).cast<float>());
+      }
+    };
+    add_ring(polygon.outer);
+    for (const Ring2d& hole : polygon.holes) add_ring(hole);
+    std::vector<std::array<std::uint32_t, 3>> triangles;
+    for (const Polygon2d& part : geos_.polygonsOf(geos_.triangulate(geos_.polygon(polygon)))) {
+      std::array<std::uint32_t, 3> corners{};
+      for (std::size_t k = 0; k < 3; ++k) {
+        const auto found = indices.find({part.outer.at(k).x(), part.outer.at(k).y()});
+        if (found == indices.end()) throw std::runtime_error("a triangle has a foreign vertex");
+        corners[k] = found->second;
+      }
+      triangles.push_back(corners);
     }
-    return found->second;
+    mesh_.vertices.insert(mesh_.vertices.end(), vertices.begin(), vertices.end());
+    mesh_.triangles.insert(mesh_.triangles.end(), triangles.begin(), triangles.end());
   }
 
   const PlaneFrame& frame_;
   PlaneMesh& mesh_;
   Geos geos_;
-  std::map<std::pair<double, double>, std::uint32_t> indices_;
 };
 
 }  // namespace

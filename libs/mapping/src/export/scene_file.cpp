@@ -27,7 +27,7 @@ constexpr double kFieldOfView = 0.6;  ///< [rad] vertical, of the perspective vi
 constexpr double kTopFieldOfView = 0.05;
 constexpr double kBorder = 1.05;  ///< the top view is this much wider than the map
 /// The perspective view encloses the map's circumscribed sphere times this: maps are flat.
-constexpr double kFill = 0.85;
+constexpr double kFill = 0.95;
 
 Eigen::AlignedBox3d boundsOf(const PlanarMap& map, const Trajectory& trajectory) {
   Eigen::AlignedBox3d bounds;

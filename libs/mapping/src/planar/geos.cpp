@@ -8,6 +8,10 @@
 namespace opp::mapping {
 namespace {
 
+/// [m] Coordinates of untied polygons are multiples of this: a million times the rounding of
+/// doubles at 10 m, a millionth of what a sensor sees.
+constexpr double kGrid = 1e-9;
+
 void keepMessage(const char* message, void* text) { *static_cast<std::string*>(text) = message; }
 
 }  // namespace
@@ -62,13 +66,14 @@ Geos::Geometry Geos::unionOf(const Geometry& parts) const {
   return checked(GEOSUnaryUnion_r(handle_, parts.get()));
 }
 
-Geos::Geometry Geos::makeValid(const Geometry& geometry) const {
+Geos::Geometry Geos::untied(const Geometry& geometry) const {
   GEOSMakeValidParams* params = GEOSMakeValidParams_create_r(handle_);
   GEOSMakeValidParams_setMethod_r(handle_, params, GEOS_MAKE_VALID_STRUCTURE);
   GEOSMakeValidParams_setKeepCollapsed_r(handle_, params, 0);
-  GEOSGeometry* valid = GEOSMakeValidWithParams_r(handle_, geometry.get(), params);
+  GEOSGeometry* raw = GEOSMakeValidWithParams_r(handle_, geometry.get(), params);
   GEOSMakeValidParams_destroy_r(handle_, params);
-  return checked(valid);
+  const Geometry valid = checked(raw);
+  return checked(GEOSGeom_setPrecision_r(handle_, valid.get(), kGrid, 0));
 }
 
 Geos::Geometry Geos::simplify(const Geometry& geometry, double tolerance) const {

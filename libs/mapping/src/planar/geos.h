@@ -43,8 +43,9 @@ class Geos {
   Geometry polygon(const Polygon2d& polygon) const;
   Geometry collection(std::vector<Geometry> parts) const;
   Geometry unionOf(const Geometry& parts) const;
-  /// The area that an outline which may cross or touch itself encloses; lines without area go.
-  Geometry makeValid(const Geometry& geometry) const;
+  /// The area that an outline which may cross or touch itself encloses. Spikes and necks thinner
+  /// than about a nanometre go: turned to another frame they would cross themselves by rounding.
+  Geometry untied(const Geometry& geometry) const;
   Geometry simplify(const Geometry& geometry, double tolerance) const;
   /// Triangles that fill the polygons without further vertices.
   Geometry triangulate(const Geometry& geometry) const;

@@ -65,9 +65,9 @@ Eigen::Vector2d snapped(const Eigen::Vector2d& vertex, const Targets& targets, d
   return best;
 }
 
-std::vector<Polygon2d> untied(const Polygon2d& polygon, double min_area, const Geos& geos) {
-  const Geos::Geometry valid = geos.makeValid(geos.polygon(polygon));
-  std::vector<Polygon2d> parts = geos.polygonsOf(geos.simplify(valid, kStraight));
+std::vector<Polygon2d> partsOf(const Polygon2d& polygon, double min_area, const Geos& geos) {
+  const Geos::Geometry shape = geos.untied(geos.polygon(polygon));
+  std::vector<Polygon2d> parts = geos.polygonsOf(geos.simplify(shape, kStraight));
   const auto is_small = [&](const Ring2d& ring) { return std::abs(signedArea(ring)) < min_area; };
   for (Polygon2d& part : parts) {
     part.holes.erase(std::remove_if(part.holes.begin(), part.holes.end(), is_small),
@@ -108,7 +108,7 @@ void snapPolygons(PlanarMap& map, const PlanarParams& params) {
       for (const auto& hole : polygon.holes) {
         flat.holes.push_back(snappedRing(hole, frame, targets, params.snap));
       }
-      for (const Polygon2d& part : untied(flat, params.min_area, geos)) {
+      for (const Polygon2d& part : partsOf(flat, params.min_area, geos)) {
         polygons.push_back({lifted(part.outer, frame), {}});
         for (const Ring2d& hole : part.holes) {
           polygons.back().holes.push_back(lifted(hole, frame));

@@ -21,14 +21,14 @@ struct PlaneMesh {
   std::string name;  ///< kind and id, e.g. "wall 3"
   Eigen::Vector3f normal = Eigen::Vector3f::UnitZ();
   Color color{};
-  std::vector<Eigen::Vector3f> vertices;  ///< the vertices of the polygons, no others
+  std::vector<Eigen::Vector3f> vertices;  ///< the vertices of the polygons
   /// Indices into `vertices`, counter-clockwise seen from the normal's side.
   std::vector<std::array<std::uint32_t, 3>> triangles;
 };
 
 /// Triangles of all planes that have polygons, in the order of the map. Floors and ceilings have a
-/// colour of their own, other planes that of their family.
-/// \throws std::runtime_error if a polygon crosses itself.
+/// colour of their own, other planes that of their family. Of a polygon that crosses itself (none
+/// of ours does) the triangles fill what its outline encloses.
 std::vector<PlaneMesh> triangulate(const PlanarMap& map);
 
 }  // namespace opp::mapping

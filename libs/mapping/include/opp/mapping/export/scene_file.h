@@ -12,7 +12,7 @@ namespace opp::mapping {
 /// Writes the map for MRPT's SceneViewer3D (.3Dscene), whole or not at all. Objects by name:
 /// "planes" (seen from the side from which they were scanned only, so that one looks into a room
 /// from outside), "outlines", "lines", "corners" (their axes), "trajectory".
-/// \throws std::runtime_error if the file cannot be written or a polygon crosses itself.
+/// \throws std::runtime_error if the file cannot be written.
 void writeScene(const std::filesystem::path& path, const PlanarMap& map,
                 const Trajectory& trajectory);
 
@@ -29,8 +29,8 @@ struct RenderOptions {
 
 /// Draws the map to a PNG file, whole or not at all; no display is needed (EGL). `up`: unit vector
 /// in the map's frame. Not byte-identical across graphics drivers.
-/// \throws std::invalid_argument for a bad size; std::runtime_error if the file cannot be written,
-/// a polygon crosses itself, or there is no EGL driver.
+/// \throws std::invalid_argument for a bad size; std::runtime_error if the file cannot be written
+/// or there is no EGL driver.
 void renderScene(const std::filesystem::path& path, const PlanarMap& map,
                  const Trajectory& trajectory, const Eigen::Vector3d& up,
                  const RenderOptions& options = {});
