@@ -53,17 +53,21 @@ double neighborAngle(const PointCloud& cloud, const RangeGate& gate, int row_ste
   return *middle;
 }
 
+/// Angles between neighbouring rays [rad]; 0: unknown.
+struct GridAngles {
+  double row = 0.0;
+  double col = 0.0;
+};
+
 struct BlockShape {
   int rows = 1;
   int cols = 1;
 };
 
-BlockShape blockShape(const PointCloud& cloud, const RangeGate& gate, std::size_t target) {
+BlockShape blockShape(const PointCloud& cloud, const GridAngles& angles, std::size_t target) {
   const double pixels =
       std::max(1.0, static_cast<double>(cloud.size()) / static_cast<double>(target));
-  const double row_angle = neighborAngle(cloud, gate, 1, 0);
-  const double col_angle = neighborAngle(cloud, gate, 0, 1);
-  const double ratio = row_angle > 0.0 && col_angle > 0.0 ? row_angle / col_angle : 1.0;
+  const double ratio = angles.row > 0.0 && angles.col > 0.0 ? angles.row / angles.col : 1.0;
   const double rows =
       std::clamp(std::round(std::sqrt(pixels / ratio)), 1.0, static_cast<double>(cloud.rows));
   const double cols = std::clamp(std::round(pixels / rows), 1.0, static_cast<double>(cloud.cols));
@@ -115,12 +119,14 @@ void GridPatches::window(int patch, int radius, std::vector<int>& members) const
 GridPatches makeGridPatches(const PointCloud& cloud, const SensorModel& sensor,
                             std::size_t target) {
   const RangeGate gate(cloud, sensor);
-  const BlockShape shape = blockShape(cloud, gate, target);
+  const GridAngles angles{neighborAngle(cloud, gate, 1, 0), neighborAngle(cloud, gate, 0, 1)};
+  const BlockShape shape = blockShape(cloud, angles, target);
   GridPatches grid;
   grid.rows = (cloud.rows + shape.rows - 1) / shape.rows;
   grid.cols = (cloud.cols + shape.cols - 1) / shape.cols;
   grid.columns_wrap = cloud.columns_wrap;
   grid.patches.origin = cloud.viewpoint.cast<double>();
+  grid.patches.pixel_angle = std::min(angles.row, angles.col);
   grid.patches.reserve(static_cast<std::size_t>(grid.rows) * static_cast<std::size_t>(grid.cols));
   for (int r = 0; r < grid.rows; ++r) {
     for (int c = 0; c < grid.cols; ++c) {

@@ -29,9 +29,9 @@ double roundingSigma(const Eigen::Vector3d& point) {
 }
 
 /// The median of ratios of a measured to an expected variance as a factor of standard deviations,
-/// at most 2: more noise than twice the model's is taken for structure. 1 if there are none.
+/// at most 3: more noise than three times the model's is taken for structure. 1 if there are none.
 double scaleFrom(std::vector<double>& variance_ratios) {
-  constexpr double kLargest = 2.0;
+  constexpr double kLargest = 3.0;
   if (variance_ratios.empty()) return 1.0;
   const auto middle =
       variance_ratios.begin() + static_cast<std::ptrdiff_t>(variance_ratios.size() / 2);
@@ -79,7 +79,7 @@ void PatchNormals::measureNoise() {
     neighborhood_(static_cast<int>(i), 1, window_);
     const WindowFit plane = fitWindow(window_);
     if (plane.normal.isZero()) continue;
-    const double expected = plane.model_sigma * plane.model_sigma;
+    const double expected = plane.expected_sigma * plane.expected_sigma;
     const int freedom = static_cast<int>(window_.size()) - kPlaneParameters;
     // Median of χ² over its degrees of freedom (Wilson & Hilferty 1931).
     const double median_over_mean = std::pow(1.0 - 2.0 / (9.0 * freedom), 3);
@@ -123,10 +123,7 @@ WindowFit PatchNormals::fitWindow(const std::vector<int>& window) const {
   const double cos_incidence = plane.normal.dot(ray);
   if (std::abs(cos_incidence) < std::cos(params_.max_incidence)) return fit;
   fit.normal = cos_incidence < 0.0 ? Eigen::Vector3d(-plane.normal) : plane.normal;
-  fit.model_sigma = sensor_.sigmaAlongNormal(range, cos_incidence);
-  const double rounding = roundingSigma(fit.mean + patches_.origin);
-  fit.sigma = noise_scale_ * fit.model_sigma + rounding;
-  fit.spread_sigma = spread_scale_ * fit.model_sigma + rounding;
+  setNoise(fit, range, std::abs(cos_incidence));
   // A surface whose normal turns by ±normal_error over the window's width w = √(12 variance)
   // deviates from its plane by normal_error·w/√180 (rms of a parabola).
   fit.bend = params_.normal_error * std::sqrt(plane.width / 15.0);
@@ -139,6 +136,19 @@ WindowFit PatchNormals::fitWindow(const std::vector<int>& window) const {
   fit.surprise = (between / noise - freedom) / deviation;
   fit.angle_variance = std::max(noise, between / freedom) / (sums[0] * plane.width);
   return fit;
+}
+
+void PatchNormals::setNoise(WindowFit& window, double range, double cos_incidence) const {
+  window.model_sigma = sensor_.sigmaAlongNormal(range, cos_incidence);
+  // A ray that is off by an angle meets a slanted surface nearer or farther (modelled so by Handa
+  // et al., ICRA 2014).
+  const double lateral = params_.lateral_noise * patches_.pixel_angle * range *
+                         std::sqrt(std::max(0.0, 1.0 - cos_incidence * cos_incidence));
+  window.expected_sigma = std::sqrt(window.model_sigma * window.model_sigma + lateral * lateral);
+  const double least =
+      params_.noise_floor * window.model_sigma + roundingSigma(window.mean + patches_.origin);
+  window.sigma = std::max(least, noise_scale_ * window.expected_sigma);
+  window.spread_sigma = std::max(least, spread_scale_ * window.expected_sigma);
 }
 
 bool PatchNormals::hangsOnOnePatch(const std::vector<int>& window, const Eigen::Vector3d& mean,

@@ -16,6 +16,7 @@ struct WindowFit {
   Eigen::Vector3d normal = Eigen::Vector3d::Zero();  ///< to the viewpoint; zero: no plane
   Eigen::Vector3d mean = Eigen::Vector3d::Zero();    ///< relative to the patches' origin
   double model_sigma = 0.0;     ///< along the normal, of one raw point, by the sensor model [m]
+  double expected_sigma = 0.0;  ///< the same with lateral noise [m]
   double sigma = 0.0;           ///< the same, as neighbouring patches of this cloud show it [m]
   double spread_sigma = 0.0;    ///< the same, as points within patches show it [m]
   double bend = 0.0;            ///< deviation that a tolerated curvature explains (rms) [m]
@@ -54,6 +55,7 @@ class PatchNormals {
   bool hangsOnOnePatch(const std::vector<int>& window, const Eigen::Vector3d& mean,
                        const Eigen::Vector3d& narrow) const;
   double spreadOf(int patch, const Eigen::Vector3d& normal) const;
+  void setNoise(WindowFit& window, double range, double cos_incidence) const;
   double betweenPatches(const std::vector<int>& window, const WindowFit& plane) const;
   bool fits(int patch, const WindowFit& plane) const;
   const WindowFit* bestWindow(int patch, int radius);
@@ -65,8 +67,8 @@ class PatchNormals {
   Eigen::Vector3d viewpoint_;  ///< relative to the patches' origin
   SensorModel sensor_;
   SamplingParams params_;
-  double noise_scale_ = 1.0;     ///< noise seen between patches over the model's
-  double spread_scale_ = 1.0;    ///< noise seen within patches over the model's
+  double noise_scale_ = 1.0;     ///< noise seen between patches over the expected
+  double spread_scale_ = 1.0;    ///< noise seen within patches over the expected
   std::vector<WindowFit> fits_;  ///< of the current radius
   std::vector<int> fit_radius_;  ///< radius at which fits_[i] was computed; 0: never
   std::vector<int> window_;      ///< scratch

@@ -34,6 +34,7 @@ struct Patches {
   Eigen::Vector3d origin = Eigen::Vector3d::Zero();  ///< of all moments, in the cloud's frame [m]
   std::vector<MomentSums> sums;                      ///< none is empty
   std::vector<Eigen::Vector3d> means;                ///< relative to the origin
+  double pixel_angle = 0.0;  ///< between the rays of grid neighbours, the closer ones; 0: no grid
 
   std::size_t size() const { return sums.size(); }
   void reserve(std::size_t count) {

@@ -16,9 +16,11 @@ struct SamplingParams {
   int target_samples = 8000;
   double patches_per_sample = 2.5;
   double spacing_per_sigma = 2.0;
-  double normal_error = degToRad(4.0);
+  double normal_error = degToRad(5.0);
   int max_window_radius = 4;
   double gate = 3.0;
+  double noise_floor = 0.3;
+  double lateral_noise = 0.5;
   double max_incidence = degToRad(85.0);
   double merge_angle = degToRad(20.0);
 
@@ -38,6 +40,12 @@ struct SamplingParams {
                                  "largest window for a normal, in patches around its own"});
     f(p.gate, Field{"gate", "", 1.0, 10.0,
                     "deviations from a local plane up to this many standard deviations are noise"});
+    f(p.noise_floor,
+      Field{"noise_floor", "", 0.0, 1.0,
+            "a cloud may look less noisy than the sensor's model, but not below this share of it"});
+    f(p.lateral_noise,
+      Field{"lateral_noise", "", 0.0, 10.0,
+            "error of a ray's direction in pixels: noise on slanted surfaces of a depth image"});
     f(p.max_incidence, Field{"max_incidence", "rad", 0.1, kPi / 2,
                              "surfaces seen at a flatter angle (from the normal) are dropped"});
     f(p.merge_angle, Field{"merge_angle", "rad", 0.01, kPi / 2,
