@@ -64,7 +64,8 @@ std::vector<Plane> planesOf(const Builder& builder) {
   return planes;
 }
 
-/// Gives the samples to the clusters, fits these, and drops clusters that no sample fixes.
+/// Gives the samples to the clusters, fits these, and drops clusters that no sample fixes; samples
+/// of dropped clusters are left without one.
 void assignAndFit(Builder& builder) {
   builder.labels = builder.assigner.assign(planesOf(builder));
   const auto moments = builder.assigner.moments(builder.labels, builder.clusters.size());
@@ -73,13 +74,18 @@ void assignAndFit(Builder& builder) {
     if (label >= 0) ++counts[static_cast<std::size_t>(label)];
   }
   std::vector<Cluster> kept;
+  std::vector<int> kept_of(builder.clusters.size(), -1);
   const Eigen::Vector3d viewpoint = builder.cloud.viewpoint.cast<double>();
   for (std::size_t c = 0; c < builder.clusters.size(); ++c) {
     if (counts[c] < std::max(3.0, builder.params.min_area)) continue;
+    kept_of[c] = static_cast<int>(kept.size());
     kept.push_back(builder.clusters[c]);
     kept.back().moments = moments[c];
     kept.back().samples = counts[c];
     kept.back().plane = moments[c].fitPlane(viewpoint);
+  }
+  for (int& label : builder.labels) {
+    if (label >= 0) label = kept_of[static_cast<std::size_t>(label)];
   }
   builder.clusters = std::move(kept);
 }
