@@ -11,9 +11,10 @@
 namespace opp {
 namespace {
 
-/// One surface, cut in two by noise: the halves of a Gaussian lie 1.6σ apart and each has a mean
-/// square of 1 σ² about the joint plane; 2 leaves room for the error of such estimates.
-constexpr double kOneSurface = 2.0;
+/// One surface that nearest-plane assignment cuts in two: each half of a Gaussian has a mean square
+/// of 0.36 σ² about its own plane and of 1 σ² about the common one, 2.8 times as much. Two surfaces
+/// that `splitLayers` tells apart have at least 6 times as much.
+constexpr double kOneSurface = 4.0;
 
 /// Whether the samples of both planes fit one plane as well as two.
 bool sameSurface(const PlaneFit& a, const PlaneFit& b, const RefinementParams& params) {
@@ -23,8 +24,7 @@ bool sameSurface(const PlaneFit& a, const PlaneFit& b, const RefinementParams& p
   const Eigen::Vector3d normal = ownNormal(joint.scatter(), a.plane.normal());
   const Plane plane = Plane::fromPointNormal(joint.mean(), normal);
   const auto fits = [&](const PlaneFit& part) {
-    const double own = part.sums.meanVariance() + part.slack * part.slack;
-    return part.moments.squaredError(plane) <= kOneSurface * own * part.moments.weight();
+    return part.moments.squaredError(plane) <= kOneSurface * part.moments.squaredError(part.plane);
   };
   return fits(a) && fits(b);
 }
@@ -58,7 +58,7 @@ std::vector<int> survivors(std::vector<PlaneFit>& fits, const RefinementParams& 
   std::vector<std::size_t> kept, first(count);  // first: least index of those merged into a plane
   std::vector<int> target(count, -1);
   for (const std::size_t k : order) {
-    if (fits[k].sums.support < params.min_support) continue;
+    if (fits[k].curved || fits[k].sums.support < params.min_support) continue;
     const auto same = std::find_if(kept.begin(), kept.end(), [&](std::size_t other) {
       return sameSurface(fits[other], fits[k], params);
     });
@@ -122,7 +122,7 @@ PlanePrimitive primitiveOf(const PlaneFit& fit, int family, const OrientedCloud&
   const SampleSums& sums = fit.sums;
   result.support = sums.support;
   result.area = sums.support * cloud.spacing * cloud.spacing;
-  result.rms = sums.robust_weight > 0.0 ? std::sqrt(sums.square_sum / sums.robust_weight) : 0.0;
+  result.rms = std::sqrt(sums.meanSquare());
   const Eigen::Vector3d& shared = scan.families[static_cast<std::size_t>(family)].normal;
   const double sign = shared.dot(result.plane.normal()) < 0.0 ? -1.0 : 1.0;
   const Eigen::Matrix<double, 3, 2> tangents = tangentBasis(result.plane.normal());

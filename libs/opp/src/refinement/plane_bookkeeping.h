@@ -18,8 +18,9 @@ inline constexpr double kLeastAngleVariance = 1e-12;
 /// Least-squares normal of a point set; directions that the points do not fix stay as in `known`.
 Eigen::Vector3d ownNormal(const Eigen::Matrix3d& scatter, const Eigen::Vector3d& known);
 
-/// New index of each plane after dropping those with too few samples (−1) and merging those whose
-/// samples fit one plane as well as two; a merged plane's sums go to the one with more support.
+/// New index of each plane after dropping curved ones and those with too few samples (−1) and
+/// merging those whose samples fit one plane as well as two; a merged plane's sums go to the one
+/// with more support.
 std::vector<int> survivors(std::vector<PlaneFit>& fits, const RefinementParams& params);
 
 /// Renumbers planes and edges by `new_index`; edges that lose a plane go, equal ones add votes.

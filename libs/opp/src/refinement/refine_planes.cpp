@@ -7,18 +7,20 @@
 
 #include "refinement/plane_bookkeeping.h"
 #include "refinement/sample_assignment.h"
+#include "refinement/surface_shape.h"
 
 #include <Eigen/Eigenvalues>
 
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
+#include <utility>
 
 namespace opp {
 namespace {
 
-/// A plane rests when a pass moves it by less than this part of its standard deviation. A pass leaves
-/// a fifth of the error that it found, so that a hundredth remains.
+/// A plane rests when a pass moves it by less than this part of its standard deviation. A pass
+/// leaves a fifth of the error that it found, so that a hundredth remains.
 constexpr double kRest = 0.05;
 /// Passes on a part of the samples: enough to come from degrees and centimetres near the noise.
 constexpr int kCoarsePasses = 5;
@@ -57,13 +59,20 @@ class Refiner {
  private:
   using Index = std::size_t;
 
+  /// Parallel planes, the groups with most information first.
   std::vector<ParallelGroup> groupsOf(const std::vector<std::vector<int>>& families) const {
-    std::vector<ParallelGroup> groups;
+    std::vector<std::pair<double, ParallelGroup>> groups;
     for (const std::vector<int>& family : families) {
       const Eigen::Vector3d normal = fits_[static_cast<Index>(family.front())].plane.normal();
-      groups.push_back(makeGroup(normal, {family.begin(), family.end()}, fits_));
+      double weight = 0.0;
+      for (const int plane : family) weight += fits_[static_cast<Index>(plane)].moments.weight();
+      groups.emplace_back(weight, makeGroup(normal, {family.begin(), family.end()}, fits_));
     }
-    return groups;
+    std::stable_sort(groups.begin(), groups.end(),
+                     [](const auto& a, const auto& b) { return a.first > b.first; });
+    std::vector<ParallelGroup> sorted;
+    for (auto& group : groups) sorted.push_back(std::move(group.second));
+    return sorted;
   }
 
   /// Fits every plane for itself, on a part of the samples.
@@ -131,11 +140,13 @@ class Refiner {
   /// Tests families and edges again; true if planes or structure changed and need another fit.
   bool restructure() {
     const std::size_t before = fits_.size();
+    markCurved(samples_, labels_, params_, fits_);
     dropAndMerge();
+    const bool split = splitPlanes();
     PlaneStructure tested = findStructure(estimates(), edges_, params_);
-    const bool changed = fits_.size() != before || tested.families != structure_.families ||
-                         tested.frames != structure_.frames ||
-                         tested.soft_edges != structure_.soft_edges;
+    const bool changed =
+        fits_.size() != before || split || tested.families != structure_.families ||
+        tested.frames != structure_.frames || tested.soft_edges != structure_.soft_edges;
     structure_ = std::move(tested);
     return changed;
   }
@@ -174,6 +185,27 @@ class Refiner {
     for (int& label : labels_) {
       if (label >= 0) label = new_index[static_cast<Index>(label)];
     }
+  }
+
+  /// Gives planes that were fitted between two parallel surfaces one to each. Both halves inherit
+  /// the edges.
+  bool splitPlanes() {
+    const std::size_t count = fits_.size();
+    for (std::size_t k = 0; k < count; ++k) {
+      if (fits_[k].slack <= 0.0) continue;
+      auto layers = splitLayers(samples_, labels_, static_cast<int>(k), fits_[k], params_);
+      if (!layers) continue;
+      fits_[k] = (*layers)[0];
+      const int half = static_cast<int>(fits_.size());
+      fits_.push_back((*layers)[1]);
+      const std::vector<OrthogonalityEdge> edges = edges_;
+      for (const OrthogonalityEdge& edge : edges) {
+        const auto [a, b] = edge.planes;
+        if (a == static_cast<int>(k)) edges_.push_back({{b, half}, edge.votes});
+        if (b == static_cast<int>(k)) edges_.push_back({{a, half}, edge.votes});
+      }
+    }
+    return fits_.size() != count;
   }
 
   Primitives collect() const {

@@ -12,11 +12,13 @@ namespace {
 /// Misfit of a plane counts if noise alone would not produce it in 19 of 20 planes.
 constexpr double kChanceSigmas = 2.0;
 
+/// A sample this near to a plane needs no other explanation.
+constexpr double kExplainedSigmas = 2.0;
 /// (1e-9 m)²: below any sensor's noise, and no division by zero at the origin.
 constexpr double kLeastVariance = 1e-18;
 
-/// Worth of the mean of n equally correlated measurements, in independent ones.
-double effectiveCount(double n, double correlation) { return n / (1.0 + (n - 1.0) * correlation); }
+/// Variance of the mean of n measurements of which each two have correlation ρ, over that of one.
+double varianceOfMean(double n, double correlation) { return (1.0 + (n - 1.0) * correlation) / n; }
 
 struct Match {
   std::size_t plane = 0;
@@ -34,30 +36,6 @@ void takeNearest(const ParallelGroup& group, double position, Match& best) {
   }
 }
 
-/// Adds a sample at `distance` from the plane; false if it is an outlier.
-bool addSample(const WeightedSample& sample, double distance, double cutoff_squared,
-               PlaneFit& fit) {
-  const double precision = 1.0 / (sample.variance + fit.slack * fit.slack);
-  const double square = distance * distance;
-  const double root = 1.0 - square * precision / cutoff_squared;
-  if (!(root > 0.0)) return false;
-  SampleSums& sums = fit.sums;
-  const double robust = root * root;
-  const double weight = robust * sample.count * precision;
-  const Eigen::Vector3d x = sample.point - sums.origin;
-  const Eigen::Vector3d wx = weight * x;
-  sums.weight += weight;
-  sums.first += wx;
-  sums.second.col(0) += wx * x[0];
-  sums.second.col(1).tail<2>() += wx.tail<2>() * x[1];
-  sums.second(2, 2) += wx[2] * x[2];
-  sums.robust_weight += robust;
-  sums.square_sum += robust * square;
-  sums.variance_sum += robust * sample.variance;
-  ++sums.support;
-  return true;
-}
-
 }  // namespace
 
 std::vector<WeightedSample> weightedSamples(const OrientedCloud& cloud,
@@ -70,8 +48,9 @@ std::vector<WeightedSample> weightedSamples(const OrientedCloud& cloud,
     // Coordinates are rounded to float: no distance is better known than that.
     const double rounding = std::numeric_limits<float>::epsilon() * sample.point.norm();
     const double sigma = static_cast<double>(cloud.sigmas[i]);
-    sample.variance = std::max(sigma * sigma + rounding * rounding, kLeastVariance);
-    sample.count = effectiveCount(static_cast<double>(cloud.weights[i]), params.noise_correlation);
+    const double count = std::max(1.0, static_cast<double>(cloud.weights[i]));
+    sample.variance = kLeastVariance + rounding * rounding +
+                      sigma * sigma * varianceOfMean(count, params.noise_correlation);
   }
   return samples;
 }
@@ -97,13 +76,34 @@ void SampleSums::merge(const SampleSums& other) {
   support += other.support;
 }
 
+bool SampleSums::add(const WeightedSample& sample, double distance, double slack,
+                     double outlier_cutoff) {
+  const double precision = 1.0 / (sample.variance + slack * slack);
+  const double square = distance * distance;
+  const double root = 1.0 - square * precision / (outlier_cutoff * outlier_cutoff);
+  if (!(root > 0.0)) return false;
+  const double robust = root * root;
+  const Eigen::Vector3d x = sample.point - origin;
+  const Eigen::Vector3d wx = robust * precision * x;
+  weight += robust * precision;
+  first += wx;
+  second.col(0) += wx * x[0];
+  second.col(1).tail<2>() += wx.tail<2>() * x[1];
+  second(2, 2) += wx[2] * x[2];
+  robust_weight += robust;
+  square_sum += robust * square;
+  variance_sum += robust * sample.variance;
+  ++support;
+  return true;
+}
+
 double SampleSums::excess(double outlier_cutoff) const {
   if (!(robust_weight > 0.0)) return 0.0;
   // E[ω r²] / E[ω] of a standard normal r under ω = (1 − r²/c²)².
   const double inverse = 1.0 / (outlier_cutoff * outlier_cutoff);
   const double expected = (1.0 - 6.0 * inverse + 15.0 * inverse * inverse) /
                           (1.0 - 2.0 * inverse + 3.0 * inverse * inverse);
-  const double mean_square = square_sum / robust_weight / expected;
+  const double mean_square = meanSquare() / expected;
   // Mean squares of N Gaussian residuals scatter by √(2/N).
   const double chance = kChanceSigmas * std::sqrt(2.0 / support) * meanVariance();
   const double beyond = mean_square - meanVariance();
@@ -126,22 +126,25 @@ ParallelGroup makeGroup(const Eigen::Vector3d& normal, const std::vector<std::si
 void assignSamples(const std::vector<WeightedSample>& samples,
                    const std::vector<ParallelGroup>& groups, const RefinementParams& params,
                    std::size_t stride, std::vector<PlaneFit>& fits, std::vector<int>& labels) {
+  if (fits.empty()) return;
   for (PlaneFit& fit : fits) {
     SampleSums cleared;
     cleared.origin = fit.moments.empty() ? fit.plane.project(cleared.origin) : fit.moments.mean();
     fit.sums = cleared;
   }
   const double least_cosine = std::cos(params.normal_gate);
-  const double cutoff_squared = params.outlier_cutoff * params.outlier_cutoff;
   for (std::size_t i = 0; i < samples.size(); i += stride) {
     const WeightedSample& sample = samples[i];
+    const double explained = kExplainedSigmas * std::sqrt(sample.variance);
     Match best;
     for (const ParallelGroup& group : groups) {
       if (!(std::abs(group.normal.dot(sample.normal)) >= least_cosine)) continue;
       takeNearest(group, group.normal.dot(sample.point), best);
+      if (std::abs(best.distance) < explained) break;
     }
+    PlaneFit& fit = fits[best.plane];
     const bool matched = std::isfinite(best.distance) &&
-                         addSample(sample, best.distance, cutoff_squared, fits[best.plane]);
+                         fit.sums.add(sample, best.distance, fit.slack, params.outlier_cutoff);
     labels[i] = matched ? static_cast<int>(best.plane) : -1;
   }
   for (PlaneFit& fit : fits) fit.moments = fit.sums.moments();

@@ -16,8 +16,7 @@ namespace opp {
 struct WeightedSample {
   Eigen::Vector3d point;
   Eigen::Vector3d normal;
-  double variance;  ///< of one raw point's offset, rounding included [m²]
-  double count;     ///< independent raw points that it is worth
+  double variance;  ///< of its offset: of n raw points whose errors are correlated [m²]
 };
 
 std::vector<WeightedSample> weightedSamples(const OrientedCloud& cloud,
@@ -26,18 +25,21 @@ std::vector<WeightedSample> weightedSamples(const OrientedCloud& cloud,
 /// Sums over the samples of a plane; ω is Tukey's weight in (0, 1].
 struct SampleSums {
   Eigen::Vector3d origin = Eigen::Vector3d::Zero();  ///< of the coordinates below, near the mean
-  double weight = 0.0;                               ///< Σ w, w = ω × count / variance [1/m²]
+  double weight = 0.0;                               ///< Σ w, w = ω / variance [1/m²]
   Eigen::Vector3d first = Eigen::Vector3d::Zero();   ///< Σ w x
   Eigen::Matrix3d second = Eigen::Matrix3d::Zero();  ///< Σ w x xᵀ, lower triangle
   double robust_weight = 0.0;                        ///< Σ ω
   double square_sum = 0.0;                           ///< Σ ω r² [m²]
-  double variance_sum = 0.0;                         ///< Σ ω σ², σ: of a raw point [m²]
+  double variance_sum = 0.0;                         ///< Σ ω × variance of the sample [m²]
   int support = 0;                                   ///< samples
 
   PointMoments moments() const;
   void merge(const SampleSums& other);
-  /// Mean variance of a raw point [m²].
+  /// Adds a sample at `distance` from the plane [m]; false if it is an outlier.
+  bool add(const WeightedSample& sample, double distance, double slack, double outlier_cutoff);
+  /// Mean variance that the sensor's noise explains [m²].
   double meanVariance() const { return robust_weight > 0.0 ? variance_sum / robust_weight : 0.0; }
+  double meanSquare() const { return robust_weight > 0.0 ? square_sum / robust_weight : 0.0; }
   /// Standard deviation of the residuals beyond the sensor's noise [m]; 0 if it could be chance.
   double excess(double outlier_cutoff) const;
 };
@@ -48,6 +50,7 @@ struct PlaneFit {
   double slack = 0.0;  ///< [m] misfit beyond the sensor's noise; gates are wide while it is large
   SampleSums sums;
   PointMoments moments;  ///< of the sums
+  bool curved = false;   ///< its samples' normals say that it is no plane
 };
 
 /// Planes that share one normal, to be searched by offset.
@@ -64,8 +67,10 @@ struct ParallelGroup {
 ParallelGroup makeGroup(const Eigen::Vector3d& normal, const std::vector<std::size_t>& planes,
                         const std::vector<PlaneFit>& fits);
 
-/// Gives every `stride`-th sample to the nearest plane whose normal agrees, if it is no outlier
-/// there, and sums it up in that plane's fit (IV-b (1), (2)). Labels of the other samples stay.
+/// Gives every `stride`-th sample to a plane whose normal agrees, if it is no outlier there, and
+/// sums it up in that plane's fit (IV-b (1), (2)): to the nearest of the first group (the one with
+/// most support) that explains it, so that no small plane grows askew into a large one; else to the
+/// nearest of all. Labels of the other samples stay.
 void assignSamples(const std::vector<WeightedSample>& samples,
                    const std::vector<ParallelGroup>& groups, const RefinementParams& params,
                    std::size_t stride, std::vector<PlaneFit>& fits, std::vector<int>& labels);

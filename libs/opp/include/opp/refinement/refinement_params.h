@@ -25,11 +25,14 @@ struct RefinementParams {
   /// this much (standard deviation) however many points they have. 0.25° is 4 mm over 1 m, what
   /// calibrated structured-light cameras show; near 0 for a simulated or ideal sensor.
   double systematic_angle = degToRad(0.25);
+  /// Normals of a cylinder turn across the strip that passes for a plane; those of a plane scatter
+  /// by a few degrees, but not with the place.
+  double max_turn = degToRad(20.0);
   double test_sigmas = 3.0;               ///< see visit
   double max_correction = degToRad(2.5);  ///< see visit
   int min_support = 10;                   ///< see visit
   int coarse_samples = 2000;              ///< see visit
-  int max_iterations = 30;                ///< see visit
+  int max_iterations = 12;                ///< see visit
 
   template <typename Self, typename F>
   static void visit(Self&& p, F&& f) {
@@ -41,6 +44,8 @@ struct RefinementParams {
                                  "correlation of the errors of neighbouring raw points"});
     f(p.systematic_angle, Field{"systematic_angle", "rad", 0.0, 0.2,
                                 "error of angles between planes that more points do not reduce"});
+    f(p.max_turn, Field{"max_turn", "rad", 0.01, degToRad(90.0),
+                        "surfaces whose normals turn by more across their extent are curved"});
     f(p.test_sigmas, Field{"test_sigmas", "", 1.0, 10.0,
                            "parallel and orthogonal are kept if the data deviate by fewer sigmas"});
     f(p.max_correction, Field{"max_correction", "rad", 0.0, 0.3,

@@ -1,0 +1,158 @@
+// SPDX-FileCopyrightText: 2026 The opp-mapping authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "refinement/surface_shape.h"
+
+#include "refinement/plane_bookkeeping.h"
+
+#include <Eigen/Eigenvalues>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace opp {
+namespace {
+
+/// Distance of two layers over the standard deviation within them. Cut in halves, a Gaussian has
+/// 2.7 and a uniform distribution 3.5; two that do not overlap have 4 and more.
+constexpr double kSeparation = 4.5;
+constexpr int kMaxSplitSteps = 20;
+
+/// Sums of the regression of normals on places, both in the plane's tangent coordinates.
+struct TurnSums {
+  Eigen::Matrix2d places = Eigen::Matrix2d::Zero();   ///< Σ t tᵀ, t from the mean place
+  Eigen::Matrix2d crossed = Eigen::Matrix2d::Zero();  ///< Σ m tᵀ
+  Eigen::Vector2d tilts = Eigen::Vector2d::Zero();    ///< Σ m
+  Eigen::Vector2d mean_place = Eigen::Vector2d::Zero();
+  double tilt_squares = 0.0;  ///< Σ |m|²
+  double count = 0.0;
+};
+
+bool turns(const TurnSums& sums, const RefinementParams& params) {
+  if (sums.count < 3.0) return false;
+  const Eigen::Vector2d place = sums.mean_place / sums.count, tilt = sums.tilts / sums.count;
+  const Eigen::Matrix2d spread = sums.places / sums.count - place * place.transpose();
+  const Eigen::Matrix2d joint = sums.crossed / sums.count - tilt * place.transpose();
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes(spread);
+  double turn = 0.0;
+  for (int k = 0; k < 2; ++k) {
+    // Tilt per standard deviation of the place; an even strip is √12 standard deviations wide.
+    const double deviation = std::sqrt(std::max(axes.eigenvalues()[k], 0.0));
+    if (!(deviation > 0.0)) continue;
+    turn =
+        std::max(turn, std::sqrt(12.0) * (joint * axes.eigenvectors().col(k)).norm() / deviation);
+  }
+  const double scatter = std::max(0.0, sums.tilt_squares / sums.count - tilt.squaredNorm());
+  const double error = std::sqrt(12.0 * scatter / sums.count);
+  return turn > params.max_turn && turn > params.test_sigmas * error;
+}
+
+/// Samples of one plane, in two layers.
+class Layers {
+ public:
+  Layers(const std::vector<WeightedSample>& samples, const std::vector<int>& labels, int label,
+         const PlaneFit& fit)
+      : normal_(fit.plane.normal()) {
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+      if (labels[i] != label) continue;
+      members_.push_back(&samples[i]);
+      upper_.push_back(fit.plane.signedDistance(samples[i].point) > 0.0);
+    }
+  }
+
+  /// Alternates between fitting two parallel planes and giving each sample to the nearer.
+  void separate() {
+    bool changed = true;
+    for (int step = 0; step < kMaxSplitSteps && changed; ++step) {
+      fit();
+      const double middle = 0.5 * (positionOf(0) + positionOf(1));
+      changed = false;
+      for (std::size_t i = 0; i < members_.size(); ++i) {
+        const bool upper = normal_.dot(members_[i]->point) > middle;
+        changed = changed || upper != upper_[i];
+        upper_[i] = upper;
+      }
+    }
+    fit();
+  }
+
+  bool distinct(const RefinementParams& params) const {
+    for (const SampleSums& layer : layers_) {
+      if (layer.support < params.min_support) return false;
+    }
+    const double gap = positionOf(1) - positionOf(0);
+    double squares = 0.0;
+    for (const PointMoments& moments : moments_) {
+      squares += normal_.dot(moments.scatter() * normal_) / moments.weight();
+    }
+    return gap > kSeparation * std::sqrt(0.5 * squares);
+  }
+
+  std::array<PlaneFit, 2> fits() const {
+    std::array<PlaneFit, 2> result;
+    for (std::size_t k = 0; k < 2; ++k) {
+      result[k].plane = Plane::fromPointNormal(moments_[k].mean(), normal_);
+      result[k].sums = layers_[k];
+      result[k].moments = moments_[k];
+    }
+    if (result[0].sums.support < result[1].sums.support) std::swap(result[0], result[1]);
+    return result;
+  }
+
+ private:
+  double positionOf(std::size_t layer) const { return normal_.dot(moments_[layer].mean()); }
+
+  void fit() {
+    layers_ = {};
+    for (std::size_t i = 0; i < members_.size(); ++i) {
+      SampleSums& layer = layers_[upper_[i] ? 1 : 0];
+      if (layer.support == 0) layer.origin = members_[i]->point;
+      // Every member is an inlier: weight 1.
+      layer.add(*members_[i], 0.0, 0.0, 1.0);
+    }
+    moments_ = {layers_[0].moments(), layers_[1].moments()};
+    normal_ = ownNormal(moments_[0].scatter() + moments_[1].scatter(), normal_);
+  }
+
+  Eigen::Vector3d normal_;
+  std::vector<const WeightedSample*> members_;
+  std::vector<bool> upper_;
+  std::array<SampleSums, 2> layers_;
+  std::array<PointMoments, 2> moments_;
+};
+
+}  // namespace
+
+void markCurved(const std::vector<WeightedSample>& samples, const std::vector<int>& labels,
+                const RefinementParams& params, std::vector<PlaneFit>& fits) {
+  std::vector<TurnSums> sums(fits.size());
+  std::vector<Eigen::Matrix<double, 3, 2>> tangents;
+  for (const PlaneFit& fit : fits) tangents.push_back(tangentBasis(fit.plane.normal()));
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    if (labels[i] < 0) continue;
+    const auto k = static_cast<std::size_t>(labels[i]);
+    const double sign = samples[i].normal.dot(fits[k].plane.normal()) < 0.0 ? -1.0 : 1.0;
+    const Eigen::Vector2d place =
+        tangents[k].transpose() * (samples[i].point - fits[k].moments.mean());
+    const Eigen::Vector2d tilt = sign * tangents[k].transpose() * samples[i].normal;
+    sums[k].places += place * place.transpose();
+    sums[k].crossed += tilt * place.transpose();
+    sums[k].mean_place += place;
+    sums[k].tilts += tilt;
+    sums[k].tilt_squares += tilt.squaredNorm();
+    sums[k].count += 1.0;
+  }
+  for (std::size_t k = 0; k < fits.size(); ++k) fits[k].curved = turns(sums[k], params);
+}
+
+std::optional<std::array<PlaneFit, 2>> splitLayers(const std::vector<WeightedSample>& samples,
+                                                   const std::vector<int>& labels, int label,
+                                                   const PlaneFit& fit,
+                                                   const RefinementParams& params) {
+  Layers layers(samples, labels, label, fit);
+  layers.separate();
+  if (!layers.distinct(params)) return std::nullopt;
+  return layers.fits();
+}
+
+}  // namespace opp

@@ -1,0 +1,28 @@
+// SPDX-FileCopyrightText: 2026 The opp-mapping authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "opp/refinement/refinement_params.h"
+
+#include "refinement/sample_assignment.h"
+
+#include <array>
+#include <optional>
+#include <vector>
+
+namespace opp {
+
+/// Marks the fits whose samples' normals turn with the place by more than `max_turn` across their
+/// extent, and by more than the normals' scatter could feign: strips of cylinders and spheres.
+void markCurved(const std::vector<WeightedSample>& samples, const std::vector<int>& labels,
+                const RefinementParams& params, std::vector<PlaneFit>& fits);
+
+/// Two parallel surfaces that the plane `label` was fitted between (a cupboard's back on a wall),
+/// the larger first; nothing if its samples do not fall in two clearly separate layers of at least
+/// `min_support` samples each.
+std::optional<std::array<PlaneFit, 2>> splitLayers(const std::vector<WeightedSample>& samples,
+                                                   const std::vector<int>& labels, int label,
+                                                   const PlaneFit& fit,
+                                                   const RefinementParams& params);
+
+}  // namespace opp
