@@ -54,14 +54,19 @@ PosePrior MotionModel::predictFromOdometry(const Eigen::Isometry3d& last_from_no
   return prior;
 }
 
-PosePrior MotionModel::predictFromVelocity(double timestamp) const {
+PosePrior MotionModel::lastPose(double timestamp) const {
+  if (!last_) return {};
   const double step = std::max(timestamp - last_->timestamp, kMinTimeStep);
   PosePrior prior;
   prior.map_from_body = last_->map_from_body;
-  if (!before_last_) {
-    prior.information = informationOf(params_.angular_speed * step, params_.speed * step);
-    return prior;
-  }
+  prior.information = informationOf(params_.angular_speed * step, params_.speed * step);
+  return prior;
+}
+
+PosePrior MotionModel::predictFromVelocity(double timestamp) const {
+  if (!before_last_) return lastPose(timestamp);
+  const double step = std::max(timestamp - last_->timestamp, kMinTimeStep);
+  PosePrior prior;
   const double past_step = std::max(last_->timestamp - before_last_->timestamp, kMinTimeStep);
   const Vector6d change = difference(before_last_->map_from_body, last_->map_from_body);
   prior.map_from_body = retract(last_->map_from_body, change * (step / past_step));

@@ -4,6 +4,7 @@
 
 #include "opp/mapping/backend/optimize_map.h"
 #include "opp/mapping/frontend/insert_keyframe.h"
+#include "opp/mapping/registration/align_globally.h"
 
 #include <algorithm>
 #include <numeric>
@@ -33,7 +34,7 @@ FrameResult Mapper::add(ScanFeatures scan, const std::optional<Eigen::Isometry3d
   const double timestamp = scan.timestamp;
   const std::size_t index = scan.scan_index;
   const PosePrior prior = motion_.predict(timestamp, odom_from_body);
-  const MatchResult match = matchScan(scan, *local_map_, prior, params_.registration);
+  const MatchResult match = localize(scan, prior);
   FrameResult result{match.overlap >= params_.frontend.min_overlap, false, match.overlap,
                      match.rms};
   if (!result.localized) return result;
@@ -60,6 +61,31 @@ FrameResult Mapper::start(ScanFeatures scan,
   addKeyframe(std::move(scan), match);
   follow(timestamp, index, initial_pose_);
   return {true, true, 1.0, 0.0};
+}
+
+/// The ladder of DESIGN 3: prediction, then the last pose with no more known than how fast a body
+/// moves, then no guess.
+MatchResult Mapper::localize(const ScanFeatures& scan, const PosePrior& predicted) const {
+  MatchResult best = matchScan(scan, *local_map_, predicted, params_.registration);
+  if (best.overlap >= params_.frontend.min_overlap) return best;
+  MatchResult wide =
+      matchScan(scan, *local_map_, motion_.lastPose(scan.timestamp), params_.registration);
+  if (wide.overlap > best.overlap) best = std::move(wide);
+  if (best.overlap >= params_.frontend.min_overlap) return best;
+  MatchResult global = relocalize(scan);
+  return global.overlap > best.overlap ? global : best;
+}
+
+MatchResult Mapper::relocalize(const ScanFeatures& scan) const {
+  const Keyframe& keyframe = map_.keyframes.back();
+  const GlobalAlignment alignment =
+      alignGlobally(keyframe.features, scan, params_.global_alignment);
+  if (alignment.outcome != AlignmentOutcome::kAligned) return {};
+  // A start without weight: the alignment saw the same scan, so its information must not count
+  // twice.
+  PosePrior start;
+  start.map_from_body = keyframe.map_from_body * alignment.target_from_source;
+  return matchScan(scan, *local_map_, start, params_.registration);
 }
 
 bool Mapper::wantsKeyframe(const MatchResult& match) const {

@@ -2,9 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "opp/mapping/core/map_factors.h"
 #include "opp/mapping/core/keyframe.h"
 #include "opp/mapping/core/landmark_map.h"
+#include "opp/mapping/core/map_factors.h"
 
 #include <vector>
 

@@ -6,6 +6,7 @@
 #include "opp/mapping/dense/occupancy_params.h"
 #include "opp/mapping/frontend/frontend_params.h"
 #include "opp/mapping/planar/planar_params.h"
+#include "opp/mapping/registration/global_alignment_params.h"
 #include "opp/mapping/registration/registration_params.h"
 #include "opp/params/primitive_params.h"
 
@@ -17,6 +18,7 @@ namespace opp::mapping {
 struct MapperParams {
   PrimitiveParams primitives;
   RegistrationParams registration;
+  GlobalAlignmentParams global_alignment;
   FrontendParams frontend;
   BackendParams backend;
   OccupancyParams occupancy;
@@ -27,6 +29,7 @@ struct MapperParams {
   static void visitSections(Self&& p, F&& f) {
     PrimitiveParams::visitSections(p.primitives, f);
     f(p.registration);
+    f(p.global_alignment);
     f(p.frontend);
     f(p.backend);
     f(p.occupancy);

@@ -23,6 +23,10 @@ class MotionModel {
   /// Where the body should be at `timestamp`. Before the first update: the identity, nothing known.
   PosePrior predict(double timestamp, const std::optional<Eigen::Isometry3d>& odom_from_body) const;
 
+  /// The last known pose, as uncertain as the typical speeds allow at `timestamp`: for a body that
+  /// did something unexpected.
+  PosePrior lastPose(double timestamp) const;
+
   /// The map has moved by an optimization: past poses are re-expressed so that the last one is
   /// `last_pose`.
   void correct(const Eigen::Isometry3d& last_pose);

@@ -55,6 +55,8 @@ class Mapper {
   };
 
   FrameResult start(ScanFeatures scan, const std::optional<Eigen::Isometry3d>& odom_from_body);
+  MatchResult localize(const ScanFeatures& scan, const PosePrior& predicted) const;
+  MatchResult relocalize(const ScanFeatures& scan) const;
   bool wantsKeyframe(const MatchResult& match) const;
   void addKeyframe(ScanFeatures scan, const MatchResult& match);
   void follow(double timestamp, std::size_t scan_index, const Eigen::Isometry3d& map_from_body);
