@@ -3,6 +3,7 @@
 #include "opp/mapping/registration/match_scan.h"
 
 #include "opp/geometry/constants.h"
+#include "opp/mapping/registration/plane_samples.h"
 
 #include "support/random.h"
 #include "support/synthetic_features.h"
@@ -19,7 +20,7 @@ constexpr double kSpacing = 0.09;
 
 struct ScanAndMap {
   ScanFeatures scan;
-  LocalMap map{kSpacing, RegistrationParams{}};
+  LocalMap map{kSpacing, SensorModel{}, RegistrationParams{}};
   Eigen::Isometry3d map_from_body = Eigen::Isometry3d::Identity();
 };
 
@@ -151,7 +152,7 @@ TEST(MatchScan, EmptyScanOrMapKeepsThePrior) {
   const ScanAndMap both = seeTwice(test::furnishedRoom(1), 1, false, options(0.0));
   test::Random random(4);
   const PosePrior prior = perturbed(both.map_from_body, random);
-  const LocalMap empty_map(kSpacing, RegistrationParams{});
+  const LocalMap empty_map(kSpacing, SensorModel{}, RegistrationParams{});
   for (const MatchResult& result :
        {matchScan(ScanFeatures{}, both.map, prior, RegistrationParams{}),
         matchScan(both.scan, empty_map, prior, RegistrationParams{}),
@@ -178,9 +179,11 @@ TEST(SampleVariance, AveragesNoiseButNotItsSystematicPart) {
   cloud.points = cloud.normals = {Eigen::Vector3f::UnitZ()};
   cloud.sigmas = {0.01F};
   cloud.weights = {4.0F};
-  // 1e-4 · (1/4 + 0.5²)
-  EXPECT_FLOAT_EQ(sampleVariance(cloud, 0, 0.5), 0.5e-4F);
-  EXPECT_FLOAT_EQ(sampleVariance(cloud, 0, 0.0), 0.25e-4F);
+  SensorModel sensor;
+  sensor.noise_correlation = 0.5;
+  EXPECT_FLOAT_EQ(sampleVariance(cloud, 0, sensor), 0.625e-4F);  // 1e-4 · (1 + 3 · 0.5) / 4
+  sensor.noise_correlation = 0.0;
+  EXPECT_FLOAT_EQ(sampleVariance(cloud, 0, sensor), 0.25e-4F);
 }
 
 }  // namespace

@@ -26,7 +26,7 @@ World randomWorld(test::Random& random, int keyframes, int planes, double sigma)
     for (int p = 0; p < planes; ++p) {
       const Plane& plane = world.planes[static_cast<std::size_t>(p)];
       PlaneFactor factor{k, p, {}, 60};
-      for (int i = 0; i < factor.samples; ++i) {
+      for (int i = 0; i < 60; ++i) {
         const Eigen::Vector3d on_plane = plane.project(random.vector(3.0));
         const Eigen::Vector3d noisy = on_plane + random.normal() * sigma * plane.normal();
         const double weight = 1.0 / std::max(sigma * sigma, 1e-6);

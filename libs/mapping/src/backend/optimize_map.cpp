@@ -85,13 +85,12 @@ class MapProblem {
   }
 
   void addPlaneFactor(const PlaneFactor& f) {
-    if (!plane_is_free_[static_cast<std::size_t>(f.landmark)] || f.samples <= 0) return;
+    if (!plane_is_free_[static_cast<std::size_t>(f.landmark)] || f.effective_samples <= 0.0) return;
     PoseBlock& pose = poses_[static_cast<std::size_t>(f.keyframe)];
     PlaneBlock& plane = planes_[static_cast<std::size_t>(f.landmark)];
-    // A factor stands for `samples` residuals of unit variance: the kernel acts on their mean
-    // square.
-    auto* loss =
-        new ceres::CauchyLoss(params_.kernel_width * std::sqrt(static_cast<double>(f.samples)));
+    // A factor stands for `effective_samples` residuals of unit variance: the kernel acts on their
+    // mean square.
+    auto* loss = new ceres::CauchyLoss(params_.kernel_width * std::sqrt(f.effective_samples));
     problem_.AddResidualBlock(new ceres::AutoDiffCostFunction<PlaneMomentCost, 4, 4, 3, 3, 1>(
                                   new PlaneMomentCost(f.moments_in_body)),
                               loss, pose.q.coeffs().data(), pose.t.data(), plane.n.data(),

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "opp/mapping/frontend/insert_keyframe.h"
 
-#include "opp/mapping/registration/local_map.h"
+#include "opp/mapping/registration/plane_samples.h"
 
 #include <Eigen/LU>
 
@@ -11,21 +11,6 @@
 
 namespace opp::mapping {
 namespace {
-
-/// Moments of the samples of each plane of a scan, in body frame, weights 1/variance.
-std::vector<PlaneFactor> planeFactors(const ScanFeatures& scan, double systematic_noise_ratio) {
-  std::vector<PlaneFactor> factors(scan.primitives_in_body.planes.size());
-  const OrientedCloud& cloud = scan.cloud_in_body;
-  for (std::size_t i = 0; i < cloud.size(); ++i) {
-    const int label = scan.primitives_in_body.labels[i];
-    if (label < 0) continue;
-    PlaneFactor& factor = factors[static_cast<std::size_t>(label)];
-    factor.moments_in_body.add(cloud.points[i].cast<double>(),
-                               1.0 / sampleVariance(cloud, i, systematic_noise_ratio));
-    ++factor.samples;
-  }
-  return factors;
-}
 
 /// Landmark of each plane of the new keyframe; landmarks are made for planes that are not known
 /// yet.
@@ -45,15 +30,15 @@ std::vector<int> assignLandmarks(const Keyframe& keyframe,
   return landmark_of_plane;
 }
 
-void addPlaneFactors(int id, double systematic_noise_ratio, MapState& map) {
+void addPlaneFactors(int id, const SensorModel& sensor, MapState& map) {
   const Keyframe& keyframe = map.keyframes[static_cast<std::size_t>(id)];
-  std::vector<PlaneFactor> factors = planeFactors(keyframe.features, systematic_noise_ratio);
-  for (std::size_t p = 0; p < factors.size(); ++p) {
-    factors[p].keyframe = id;
-    factors[p].landmark = keyframe.landmark_of_plane[p];
-    map.landmarks.planes[static_cast<std::size_t>(factors[p].landmark)].observations.push_back(
+  const std::vector<PlaneSamples> planes = planeSamples(keyframe.features, sensor);
+  for (std::size_t p = 0; p < planes.size(); ++p) {
+    const int landmark = keyframe.landmark_of_plane[p];
+    map.landmarks.planes[static_cast<std::size_t>(landmark)].observations.push_back(
         {id, static_cast<int>(p)});
-    map.factors.planes.push_back(std::move(factors[p]));
+    map.factors.planes.push_back(
+        {id, landmark, planes[p].moments_in_body, planes[p].effective_count});
   }
 }
 
@@ -105,13 +90,13 @@ void addRelativePose(int id, const Matrix6d& point_information, MapState& map) {
 
 }  // namespace
 
-int insertKeyframe(ScanFeatures features, const MatchResult& match, double systematic_noise_ratio,
+int insertKeyframe(ScanFeatures features, const MatchResult& match, const SensorModel& sensor,
                    MapState& map) {
   const int id = static_cast<int>(map.keyframes.size());
   Keyframe keyframe{match.map_from_body, std::move(features), {}};
   keyframe.landmark_of_plane = assignLandmarks(keyframe, match.planes, map.landmarks);
   map.keyframes.push_back(std::move(keyframe));
-  addPlaneFactors(id, systematic_noise_ratio, map);
+  addPlaneFactors(id, sensor, map);
   addOrthogonalities(map.keyframes.back(), map.factors);
   addCorners(id, map);
   addRelativePose(id, match.point_information, map);

@@ -96,8 +96,7 @@ bool Mapper::wantsKeyframe(const MatchResult& match) const {
 }
 
 void Mapper::addKeyframe(ScanFeatures scan, const MatchResult& match) {
-  const int id =
-      insertKeyframe(std::move(scan), match, params_.registration.systematic_noise_ratio, map_);
+  const int id = insertKeyframe(std::move(scan), match, params_.primitives.sensor, map_);
   if (id > 0) optimize(std::max(1, id + 1 - params_.backend.window));
   rebuildLocalMap();
 }
@@ -145,7 +144,7 @@ void Mapper::rebuildLocalMap() {
     spacing = std::max(spacing,
                        map_.keyframes[static_cast<std::size_t>(id)].features.cloud_in_body.spacing);
   }
-  local_map_.emplace(spacing, params_.registration);
+  local_map_.emplace(spacing, params_.primitives.sensor, params_.registration);
   for (const int id : ids) {
     const Keyframe& keyframe = map_.keyframes[static_cast<std::size_t>(id)];
     local_map_->insert(keyframe.features, keyframe.map_from_body, keyframe.landmark_of_plane);

@@ -3,6 +3,7 @@
 #include "opp/mapping/registration/match_scan.h"
 
 #include "opp/geometry/point_moments.h"
+#include "opp/mapping/registration/plane_samples.h"
 
 #include "registration/normal_space_sampling.h"
 
@@ -27,6 +28,7 @@ struct ScanPoint {
   Eigen::Vector3f normal_in_body;
   float variance;
   int label;
+  double worth = 1.0;  ///< of one point, given all points of its surface; see effectiveCount
 };
 
 /// The scan's plane as four weighted pseudo-points that stand for all its samples: column k of the
@@ -34,7 +36,7 @@ struct ScanPoint {
 struct ScanPlane {
   Eigen::Matrix4d factor = Eigen::Matrix4d::Zero();
   PointMoments moments_in_body;
-  int samples = 0;
+  double samples = 0.0;  ///< effective count
   int landmark = -1;
 };
 
@@ -59,36 +61,43 @@ class Matcher {
     const OrientedCloud& cloud = scan.cloud_in_body;
     for (const std::uint32_t i :
          sampleNormalSpace(cloud, static_cast<std::size_t>(params.max_points))) {
-      points_.push_back({cloud.points[i], cloud.normals[i],
-                         sampleVariance(cloud, i, params.systematic_noise_ratio),
-                         scan.primitives_in_body.labels[i]});
+      points_.push_back({cloud.points[i], cloud.normals[i], sampleVariance(cloud, i, map.sensor()),
+                         scan.primitives_in_body.labels[i], 1.0});
     }
+    weightPoints();
     collectPlanes();
   }
 
   MatchResult run() {
     MatchResult result;
-    for (std::size_t level = firstLevel(); level > 0; --level) iterate(map_.levels()[level], 1);
-    result.converged = iterate(map_.fine(), params_.max_iterations);
+    // All surfaces weigh alike until the basin is found, so that one that moved does not win by its
+    // many points; then each point counts, for precision.
+    weighting_ = Weighting::kBySurface;
+    for (std::size_t level = firstLevel(); level > 0; --level)
+      iterate(map_.levels()[level], kMinIterations, kFirstAnnealing);
+    iterate(map_.fine(), params_.max_iterations, kFirstAnnealing);
     associatePlanes();
-    if (hasLandmarks()) result.converged = iterate(map_.fine(), params_.max_iterations);
+    weighting_ = Weighting::kByPoint;
+    result.converged = iterate(map_.fine(), params_.max_iterations, 0.0);
     report(result);
     return result;
   }
 
  private:
+  /// Points of one surface share a part of their error; all that are on no plane count as one
+  /// surface.
+  void weightPoints() {
+    std::map<int, double> counts;
+    for (const ScanPoint& p : points_) counts[p.label] += 1.0;
+    for (ScanPoint& p : points_)
+      p.worth = effectiveCount(counts[p.label], map_.sensor()) / counts[p.label];
+  }
+
   void collectPlanes() {
-    planes_.resize(scan_.primitives_in_body.planes.size());
-    const OrientedCloud& cloud = scan_.cloud_in_body;
-    for (std::size_t i = 0; i < cloud.size(); ++i) {
-      const int label = scan_.primitives_in_body.labels[i];
-      if (label < 0) continue;
-      ScanPlane& plane = planes_[static_cast<std::size_t>(label)];
-      plane.moments_in_body.add(cloud.points[i].cast<double>(),
-                                1.0 / sampleVariance(cloud, i, params_.systematic_noise_ratio));
-      ++plane.samples;
+    for (const PlaneSamples& samples : planeSamples(scan_, map_.sensor())) {
+      planes_.push_back(
+          {samples.moments_in_body.factor(), samples.moments_in_body, samples.effective_count, -1});
     }
-    for (ScanPlane& plane : planes_) plane.factor = plane.moments_in_body.factor();
   }
 
   /// The finest level on which the points should find their surfels, as far as the prior knows the
@@ -111,16 +120,11 @@ class Matcher {
     return level;
   }
 
-  bool hasLandmarks() const {
-    return std::any_of(planes_.begin(), planes_.end(),
-                       [](const ScanPlane& p) { return p.landmark >= 0; });
-  }
-
   /// Runs until the steps are small; false if that took more than `max_iterations`.
-  bool iterate(const SurfelMap& surfels, int max_iterations) {
-    double annealing = kFirstAnnealing * surfels.voxelSize();
+  bool iterate(const SurfelMap& surfels, int max_iterations, double first_annealing) {
+    double annealing = first_annealing * surfels.voxelSize();
     const double noise_floor = 1e-3 * surfels.voxelSize();
-    for (int k = 0; k < std::max(max_iterations, kMinIterations); ++k) {
+    for (int k = 0; k < max_iterations; ++k) {
       const NormalEquations equations = assemble(surfels, annealing);
       const Vector6d step = solve(equations);
       pose_ = retract(pose_, step);
@@ -146,13 +150,12 @@ class Matcher {
                  NormalEquations& equations) const {
     const Eigen::Isometry3f pose = pose_.cast<float>();
     for (const ScanPoint& p : points_) {
-      if (p.label >= 0 && planes_[static_cast<std::size_t>(p.label)].landmark >= 0) continue;
       const Eigen::Vector3f rotated = pose.linear() * p.point_in_body;
       const Eigen::Vector3f point = rotated + pose.translation();
       const Surfel* surfel = surfels.closest(point, pose.linear() * p.normal_in_body);
       if (surfel == nullptr) continue;
       const Eigen::Vector3d normal = surfel->normal.cast<double>();
-      const double residual = static_cast<double>(surfel->normal.dot(point - surfel->mean));
+      const double residual = normal.dot((point - surfel->mean).cast<double>());
       const double variance = p.variance + 1.0 / surfel->weight + extra_variance;
       const double kernel = cauchy(residual * residual / variance);
       if (kernel > kAgreementWeight) {
@@ -161,7 +164,8 @@ class Matcher {
       }
       Vector6d jacobian;
       jacobian << rotated.cast<double>().cross(normal), normal;
-      equations.add(jacobian, residual, kernel / variance);
+      const double worth = weighting_ == Weighting::kBySurface ? p.worth : 1.0;
+      equations.add(jacobian, residual, worth * kernel / variance);
     }
   }
 
@@ -235,22 +239,24 @@ class Matcher {
   void report(MatchResult& result) {
     result.map_from_body = pose_;
     result.information = assemble(map_.fine(), 0.0).hessian;
-    NormalEquations loose_points;
-    addPoints(map_.fine(), 0.0, loose_points);
-    result.point_information = loose_points.hessian;
     for (std::size_t k = 0; k < planes_.size(); ++k) {
-      if (planes_[k].landmark < 0) continue;
-      result.planes.push_back({static_cast<int>(k), planes_[k].landmark});
-      planes_[k].landmark = -1;  // so that the overlap below counts all points
+      if (planes_[k].landmark >= 0)
+        result.planes.push_back({static_cast<int>(k), planes_[k].landmark});
     }
-    const NormalEquations all_points = assemble(map_.fine(), 0.0);
-    if (points_.empty() || all_points.agreeing == 0) return;
-    result.overlap = static_cast<double>(all_points.agreeing) / static_cast<double>(points_.size());
-    result.rms = std::sqrt(all_points.squared_distance / all_points.agreeing);
+    NormalEquations points;
+    addPoints(map_.fine(), 0.0, points);
+    if (points.agreeing == 0) return;
+    // What the points share of their error does not average out, as in the planes' moments.
+    const double count = points.agreeing;
+    result.point_information = effectiveCount(count, map_.sensor()) / count * points.hessian;
+    result.overlap = count / static_cast<double>(points_.size());
+    result.rms = std::sqrt(points.squared_distance / count);
   }
 
   /// Steps that the annealing takes from a quarter of a voxel down to a thousandth of it.
   static constexpr int kMinIterations = 9;
+
+  enum class Weighting { kBySurface, kByPoint };
 
   const ScanFeatures& scan_;
   const LocalMap& map_;
@@ -259,6 +265,7 @@ class Matcher {
   Eigen::Isometry3d pose_;
   std::vector<ScanPoint> points_;
   std::vector<ScanPlane> planes_;
+  Weighting weighting_ = Weighting::kBySurface;
 };
 
 }  // namespace

@@ -27,6 +27,11 @@ void PointMoments::merge(const PointMoments& other) {
   weight_ = total;
 }
 
+void PointMoments::scaleWeights(double factor) {
+  weight_ *= factor;
+  scatter_ *= factor;
+}
+
 double PointMoments::squaredError(const Plane& plane) const {
   const double offset = plane.signedDistance(mean_);
   return weight_ * offset * offset + plane.normal().dot(scatter_ * plane.normal());

@@ -22,6 +22,8 @@ class PointMoments {
 
   /// Adds a point with weight ≥ 0 (for least squares 1/σ²). Constant time.
   void add(const Eigen::Vector3d& point, double weight = 1.0);
+  /// Multiplies all weights with `factor` ≥ 0.
+  void scaleWeights(double factor);
   /// Adds all that `other` holds (Chan's update). Constant time.
   void merge(const PointMoments& other);
 

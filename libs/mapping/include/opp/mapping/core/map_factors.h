@@ -18,7 +18,7 @@ struct PlaneFactor {
   int keyframe = 0;
   int landmark = 0;
   PointMoments moments_in_body;
-  int samples = 0;
+  double effective_samples = 0.0;  ///< independent samples that they are worth
 };
 
 /// Relative pose of two keyframes from points that are on no landmark, or from odometry.

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "opp/cloud/sensor_model.h"
 #include "opp/mapping/core/map_state.h"
 #include "opp/mapping/registration/match_scan.h"
 
@@ -13,7 +14,7 @@ namespace opp::mapping {
 /// associated them with or new landmarks, its corners likewise (a corner is known by its three
 /// planes), its right angles orthogonality factors, and what its loose points fix a relative pose
 /// to the keyframe before. Returns the keyframe's id.
-int insertKeyframe(ScanFeatures features, const MatchResult& match, double systematic_noise_ratio,
+int insertKeyframe(ScanFeatures features, const MatchResult& match, const SensorModel& sensor,
                    MapState& map);
 
 /// Puts each corner landmark where its three plane landmarks now meet; to be called after their

@@ -2,7 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "opp/mapping/core/landmark_map.h"
+#include "opp/cloud/sensor_model.h"
+#include "opp/geometry/plane.h"
 #include "opp/mapping/core/scan_features.h"
 #include "opp/mapping/registration/registration_params.h"
 #include "opp/mapping/registration/surfel_map.h"
@@ -11,16 +12,12 @@
 
 namespace opp::mapping {
 
-/// Variance of a sample's offset along its normal [m²]: the sensor's noise averages out over the
-/// pixels of a sample, but for the part (`systematic_noise_ratio`) that neighbouring pixels share.
-float sampleVariance(const OrientedCloud& cloud, std::size_t sample, double systematic_noise_ratio);
-
 /// What a scan is registered against: surfels of some keyframes at several resolutions and the
 /// plane landmarks.
 class LocalMap {
  public:
   /// An empty map for samples about `spacing` [m] apart.
-  LocalMap(double spacing, const RegistrationParams& params);
+  LocalMap(double spacing, const SensorModel& sensor, const RegistrationParams& params);
 
   /// Adds the samples of a scan. `landmark_of_plane[p]` is the landmark of scan plane p (−1: none).
   void insert(const ScanFeatures& scan, const Eigen::Isometry3d& map_from_body,
@@ -30,13 +27,15 @@ class LocalMap {
     landmark_planes_ = std::move(planes_in_map);
   }
 
+  /// Noise of the scans.
+  const SensorModel& sensor() const { return sensor_; }
   const SurfelMap& fine() const { return levels_.front(); }
   /// Fine to coarse, at least one.
   const std::vector<SurfelMap>& levels() const { return levels_; }
   const std::vector<Plane>& landmarkPlanes() const { return landmark_planes_; }
 
  private:
-  double systematic_noise_ratio_;
+  SensorModel sensor_;
   std::vector<SurfelMap> levels_;
   std::vector<Plane> landmark_planes_;
 };

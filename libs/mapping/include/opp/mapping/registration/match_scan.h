@@ -31,7 +31,7 @@ struct MatchResult {
   Matrix6d information =
       Matrix6d::Zero();  ///< of (ω, v) from scan and map alone, without the prior
   Matrix6d point_information =
-      Matrix6d::Zero();                  ///< the part of `information` that is not from planes
+      Matrix6d::Zero();                  ///< what the points alone fix, counted as independent
   std::vector<PlaneAssociation> planes;  ///< in order of scan planes
   double overlap = 0.0;  ///< share of the scan's points that agree with the map, 0–1
   double rms = 0.0;      ///< distance of the agreeing points to their surfels [m]

@@ -18,7 +18,6 @@ struct RegistrationParams {
   double level_ratio = 4.0;
   int levels = 3;
   double normal_gate = degToRad(35.0);
-  double systematic_noise_ratio = 0.3;
   double kernel_width = 2.5;
   int max_iterations = 30;
   double rotation_tolerance = 2e-5;
@@ -38,9 +37,6 @@ struct RegistrationParams {
                       "levels of voxels; the less is known of a pose, the coarser the first"});
     f(p.normal_gate, Field{"normal_gate", "rad", 0.01, 1.57,
                            "point and surfel match if their normals differ less"});
-    f(p.systematic_noise_ratio,
-      Field{"systematic_noise_ratio", "", 0.0, 10.0,
-            "part of the sensor's noise that averaging pixels does not remove"});
     f(p.kernel_width, Field{"kernel_width", "", 0.1, 100.0,
                             "Cauchy kernel: residual in sigmas at which influence peaks"});
     f(p.max_iterations,
