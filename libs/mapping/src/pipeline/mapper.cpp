@@ -4,6 +4,7 @@
 
 #include "opp/mapping/backend/optimize_map.h"
 #include "opp/mapping/frontend/insert_keyframe.h"
+#include "opp/mapping/frontend/merge_landmarks.h"
 #include "opp/mapping/registration/align_globally.h"
 
 #include <algorithm>
@@ -97,7 +98,10 @@ bool Mapper::wantsKeyframe(const MatchResult& match) const {
 
 void Mapper::addKeyframe(ScanFeatures scan, const MatchResult& match) {
   const int id = insertKeyframe(std::move(scan), match, params_.primitives.sensor, map_);
-  if (id > 0) optimize(std::max(1, id + 1 - params_.backend.window));
+  const int first_free = std::max(1, id + 1 - params_.backend.window);
+  if (id > 0) optimize(first_free);
+  if (mergeLandmarks(map_, params_.registration.plane_gate_sigmas) > 0 && id > 0)
+    optimize(first_free);
   rebuildLocalMap();
 }
 

@@ -1,0 +1,17 @@
+// SPDX-FileCopyrightText: 2026 The opp-mapping authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "opp/mapping/core/map_state.h"
+
+namespace opp::mapping {
+
+/// Joins plane landmarks that have turned out to be one surface: they face the same way, their
+/// supports touch, and one plane explains the samples of both as well as a scan's plane must fit a
+/// landmark to be taken for it
+/// (`gate_sigmas`, see RegistrationParams::plane_gate_sigmas). Of two, the older stays; the other
+/// keeps its id but has no observations any more. Returns how many were joined. O(planes²) plus one
+/// fit per near pair.
+int mergeLandmarks(MapState& map, double gate_sigmas);
+
+}  // namespace opp::mapping

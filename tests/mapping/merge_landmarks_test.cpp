@@ -1,0 +1,85 @@
+// SPDX-FileCopyrightText: 2026 The opp-mapping authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "opp/mapping/frontend/merge_landmarks.h"
+
+#include "support/random.h"
+
+#include <gtest/gtest.h>
+
+namespace opp::mapping {
+namespace {
+
+constexpr double kSigma = 0.01;
+constexpr double kGate = 4.0;
+
+/// Adds a keyframe that saw one 1 m × 1 m patch of the plane z = height around (x, 0), as a
+/// landmark of its own.
+void addPatch(double x, double height, MapState& map, test::Random& random) {
+  const int id = static_cast<int>(map.keyframes.size());
+  Keyframe keyframe;
+  keyframe.map_from_body = random.pose(2.0);
+  keyframe.landmark_of_plane = {id};
+  PlaneFactor factor;
+  factor.keyframe = id;
+  factor.landmark = id;
+  factor.effective_samples = 100.0;
+  const Eigen::Isometry3d body_from_map = keyframe.map_from_body.inverse();
+  for (int i = 0; i < 100; ++i) {
+    const Eigen::Vector3d point(x + random.uniform(-0.5, 0.5), random.uniform(-0.5, 0.5),
+                                height + random.normal(kSigma));
+    factor.moments_in_body.add(body_from_map * point, 1.0 / (kSigma * kSigma));
+  }
+  map.keyframes.push_back(std::move(keyframe));
+  map.factors.planes.push_back(factor);
+  map.landmarks.planes.push_back({Plane::fromCoefficients({0, 0, 1}, -height), {{id, 0}}});
+}
+
+TEST(MergeLandmarks, JoinsWhatIsOneSurfaceAndNothingElse) {
+  for (std::uint64_t seed = 0; seed < 50; ++seed) {
+    test::Random random(seed);
+    MapState map;
+    addPatch(0.0, 0.0, map, random);
+    addPatch(0.9, 0.005, map, random);  // the same, half a sigma off
+    addPatch(0.0, 0.15, map, random);   // a table board 15 cm above
+    addPatch(5.0, 0.0, map, random);    // coplanar, but far away
+    EXPECT_EQ(mergeLandmarks(map, kGate), 1) << "seed " << seed;
+    EXPECT_EQ(map.landmarks.planes[0].observations.size(), 2U);
+    EXPECT_TRUE(map.landmarks.planes[1].observations.empty());
+    EXPECT_EQ(map.keyframes[1].landmark_of_plane, std::vector<int>{0});
+    EXPECT_EQ(map.factors.planes[1].landmark, 0);
+    EXPECT_EQ(mergeLandmarks(map, kGate), 0) << "a second call finds nothing more";
+  }
+}
+
+TEST(MergeLandmarks, TheTwoSidesOfABoardStayTwo) {
+  test::Random random(1);
+  MapState map;
+  addPatch(0.0, 0.0, map, random);
+  addPatch(0.0, 0.005, map, random);
+  map.landmarks.planes[1].plane_in_map = map.landmarks.planes[1].plane_in_map.flipped();
+  EXPECT_EQ(mergeLandmarks(map, kGate), 0);
+}
+
+TEST(MergeLandmarks, RightAnglesAndCornersFollow) {
+  test::Random random(2);
+  MapState map;
+  for (const double x : {0.0, 0.9, 5.0, 10.0}) addPatch(x, 0.0, map, random);
+  map.factors.orthogonalities = {{{0, 1}}, {{0, 2}}, {{1, 2}}};
+  map.landmarks.corners = {{{0, 2, 3}, Eigen::Vector3d::Zero(), {{0, 0}}},
+                           {{1, 2, 3}, Eigen::Vector3d::Zero(), {{1, 0}}},
+                           {{0, 1, 2}, Eigen::Vector3d::Zero(), {{2, 0}}}};
+  ASSERT_EQ(mergeLandmarks(map, kGate), 1);
+  ASSERT_EQ(map.factors.orthogonalities.size(), 1U);
+  EXPECT_EQ(map.factors.orthogonalities[0].landmarks, (std::array<int, 2>{0, 2}));
+  ASSERT_EQ(map.landmarks.corners.size(), 1U);
+  EXPECT_EQ(map.landmarks.corners[0].planes, (std::array<int, 3>{0, 2, 3}));
+  EXPECT_EQ(map.landmarks.corners[0].observations.size(), 2U);
+}
+
+TEST(MergeLandmarks, AnEmptyMapStaysEmpty) {
+  MapState map;
+  EXPECT_EQ(mergeLandmarks(map, kGate), 0);
+}
+
+}  // namespace
+}  // namespace opp::mapping
