@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "opp/mapping/io/rawlog_reader.h"
 
+#include "support/random.h"
 #include "support/shared_data.h"
 #include "support/temp_folder.h"
 
@@ -153,6 +154,65 @@ TEST(RawlogReader, DeliversWhatCameBeforeATruncation) {
   EXPECT_NE(reader.damage().find("cut.rawlog is damaged after"), std::string::npos)
       << reader.damage();
 }
+
+/// Reads a file to its end, whatever it is like; the number of scans, or −1 for an error.
+int scansOf(const std::filesystem::path& file) {
+  try {
+    RawlogReader reader(file);
+    int scans = 0;
+    while (const std::optional<Scan> scan = reader.nextScan()) {
+      EXPECT_GT(scan->cloud_in_body.size(), 0U);
+      ++scans;
+    }
+    return scans;
+  } catch (const std::runtime_error& error) {
+    EXPECT_NE(std::string(error.what()).find(file.filename().string()), std::string::npos)
+        << error.what();
+    return -1;
+  }
+}
+
+class DamagedRawlog : public testing::TestWithParam<const char*> {};
+
+/// Fixed seeds: MRPT 2.5 itself can crash on damaged action/frame rawlogs, never on these.
+TEST_P(DamagedRawlog, IsAnErrorOrReadButNoCrash) {
+  OPP_SKIP_WITHOUT_SHARED_DATA();
+  const std::string bytes = test::readFile(test::sharedData(GetParam()));
+  const test::TempFolder folder;
+  test::Random random(11);
+  const auto position = [&] {
+    return static_cast<std::size_t>(random.integer(0, static_cast<int>(bytes.size()) - 1));
+  };
+  int errors = 0;
+  for (int k = 0; k < 60; ++k) {
+    std::string damaged = bytes;
+    if (k % 3 == 0) {
+      damaged.resize(position());
+    } else if (k % 3 == 1) {
+      for (int flip = 0; flip < 3; ++flip) {
+        damaged[position()] ^= static_cast<char>(1 << random.integer(0, 7));
+      }
+    } else {
+      const std::size_t begin = position();
+      for (std::size_t i = begin; i < std::min(bytes.size(), begin + 64); ++i) {
+        damaged[i] = static_cast<char>(random.integer(0, 255));
+      }
+    }
+    test::writeFile(folder / "damaged.rawlog", damaged);
+    if (scansOf(folder / "damaged.rawlog") < 0) ++errors;
+  }
+  EXPECT_GT(errors, 20);  // at least the truncated third, less a few cut at the very end
+}
+
+INSTANTIATE_TEST_SUITE_P(All, DamagedRawlog,
+                         testing::Values("fixtures/test-3d-obs-ground.rawlog",
+                                         "fixtures/test_velodyne_VLP16.rawlog",
+                                         "fixtures/rot_scan_velodyne.rawlog"),
+                         [](const testing::TestParamInfo<const char*>& file) {
+                           std::string name = std::filesystem::path(file.param).stem();
+                           std::replace(name.begin(), name.end(), '-', '_');
+                           return name;
+                         });
 
 }  // namespace
 }  // namespace opp::mapping
