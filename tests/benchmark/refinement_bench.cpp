@@ -32,7 +32,7 @@ void refine(benchmark::State& state) {
   const PlaneGraph rough = test::roughGraph(scene, degToRad(2.0), 0.02, random);
   Primitives result;
   for (auto _ : state) {
-    result = refinePlanes(scene.cloud, rough, RefinementParams());
+    result = refinePlanes(scene.cloud, rough, SensorModel(), RefinementParams());
     benchmark::DoNotOptimize(result);
   }
   state.counters["samples"] = static_cast<double>(scene.cloud.size());
@@ -44,8 +44,9 @@ BENCHMARK(refine)->Arg(2000)->Arg(8000)->Arg(30000)->Arg(100000)->Arg(307000)->U
 void linesAndCorners(benchmark::State& state) {
   const test::SyntheticScene scene = furnished(state.range(0));
   test::Random random(1);
-  Primitives result = refinePlanes(
-      scene.cloud, test::roughGraph(scene, degToRad(2.0), 0.02, random), RefinementParams());
+  Primitives result =
+      refinePlanes(scene.cloud, test::roughGraph(scene, degToRad(2.0), 0.02, random), SensorModel(),
+                   RefinementParams());
   for (auto _ : state) {
     result.corners = findCorners(scene.cloud, result, CornerParams());
     result.lines = findLines(scene.cloud, result, LineParams());

@@ -60,8 +60,9 @@ double angleOf(const Primitives& result, std::size_t a, std::size_t b) {
 TEST(RefinePlanes, FindsTheExactRoomFromPlanesOffByDegreesAndCentimetres) {
   test::Random random(1);
   const SyntheticScene scene = sampled(room(), 0.0, random);
-  const Primitives result = refinePlanes(
-      scene.cloud, test::roughGraph(scene, degToRad(4.0), 0.03, random), test::undistortedSensor());
+  const Primitives result =
+      refinePlanes(scene.cloud, test::roughGraph(scene, degToRad(4.0), 0.03, random), SensorModel(),
+                   test::undistortedSensor());
   EXPECT_TRUE(result.converged);
   ASSERT_EQ(result.planes.size(), 6U);
   EXPECT_EQ(result.edges.size(), 12U);
@@ -91,7 +92,7 @@ TEST(RefinePlanes, LabelsEverySampleOfNoisyRandomRooms) {
                 random.uniform(0.05, 0.15));
     const Primitives result =
         refinePlanes(scene.cloud, test::roughGraph(scene, degToRad(3.0), 0.03, random),
-                     test::undistortedSensor());
+                     SensorModel(), test::undistortedSensor());
     ASSERT_EQ(result.planes.size(), 6U) << k;
     EXPECT_TRUE(result.converged) << k;
     EXPECT_EQ(result.families.size(), 3U) << k;
@@ -120,7 +121,7 @@ TEST(RefinePlanes, CovarianceOfConstrainedPlanesPredictsTheirErrors) {
   for (int k = 0; k < scans; ++k) {
     const SyntheticScene scene = sampled(room(), 0.005, random, 0.2);
     const Primitives result = refinePlanes(scene.cloud, test::roughGraph(scene, 0.02, 0.02, random),
-                                           test::undistortedSensor());
+                                           SensorModel(), test::undistortedSensor());
     ASSERT_EQ(result.planes.size(), 6U);
     const std::size_t i = static_cast<std::size_t>(k) % 6;
     normalized += normalizedError(result.planes[i], scene.planes[i]);
@@ -137,7 +138,7 @@ TEST(RefinePlanes, WallsThatAreNotOrthogonalKeepTheirAngle) {
       ASSERT_EQ(scene.planes.size(), 3U);
       PlaneGraph rough = test::roughGraph(scene, 0.03, 0.02, random);
       rough.edges.push_back({{1, 2}, 1.0});
-      const Primitives result = refinePlanes(scene.cloud, rough, RefinementParams());
+      const Primitives result = refinePlanes(scene.cloud, rough, SensorModel(), RefinementParams());
       ASSERT_EQ(result.planes.size(), 3U);
       // 3 m walls with 3 mm noise, 2,000 samples: 0.005°.
       EXPECT_NEAR(angleOf(result, 1, 2), angleBetween(scene.planes[1], scene.planes[2]),
@@ -159,11 +160,12 @@ TEST(RefinePlanes, NearlyParallelWallsStayApartIfTheDataSaySo) {
   const SyntheticScene scene = sampled(rectangles, 0.003, random);
   PlaneGraph rough = test::roughGraph(scene, 0.02, 0.02, random);
   rough.edges.push_back({{1, 2}, 1.0});
-  const Primitives honest = refinePlanes(scene.cloud, rough, test::undistortedSensor());
+  const Primitives honest =
+      refinePlanes(scene.cloud, rough, SensorModel(), test::undistortedSensor());
   ASSERT_EQ(honest.planes.size(), 6U);
   EXPECT_NE(honest.planes[0].family, honest.planes[1].family);
   EXPECT_NEAR(angleOf(honest, 0, 1), kPi - degToRad(0.3), degToRad(0.03));
-  const Primitives distorted = refinePlanes(scene.cloud, rough, RefinementParams());
+  const Primitives distorted = refinePlanes(scene.cloud, rough, SensorModel(), RefinementParams());
   EXPECT_EQ(distorted.planes[0].family, distorted.planes[1].family);
 }
 
@@ -173,7 +175,8 @@ TEST(RefinePlanes, MergesTwoPlanesOfOneSurfaceAndTheirEdges) {
   PlaneGraph rough = test::roughGraph(scene, 0.03, 0.02, random);
   rough.nodes.push_back(test::roughGraph(scene, 0.03, 0.02, random).nodes[0]);
   rough.edges.push_back({{2, 6}, 5.0});
-  const Primitives result = refinePlanes(scene.cloud, rough, test::undistortedSensor());
+  const Primitives result =
+      refinePlanes(scene.cloud, rough, SensorModel(), test::undistortedSensor());
   ASSERT_EQ(result.planes.size(), 6U);
   ASSERT_EQ(result.edges.size(), 12U);
   EXPECT_EQ(result.edges[0].planes, (std::array<int, 2>{0, 2}));
@@ -188,7 +191,7 @@ TEST(RefinePlanes, KeepsParallelSurfacesThatNoiseCanTellApart) {
   const SyntheticScene scene = sampled(rectangles, 0.002, random);
   ASSERT_EQ(scene.planes.size(), 7U);
   const Primitives result = refinePlanes(scene.cloud, test::roughGraph(scene, 0.002, 0.002, random),
-                                         test::undistortedSensor());
+                                         SensorModel(), test::undistortedSensor());
   ASSERT_EQ(result.planes.size(), 7U);
   EXPECT_EQ(result.planes[0].family, result.planes[6].family);
   EXPECT_NEAR(std::abs(result.planes[6].plane.d() - result.planes[0].plane.d()), 0.015, 0.001);
@@ -205,7 +208,8 @@ TEST(RefinePlanes, DropsPlanesWithoutSamplesAndRenumbersEdges) {
     edge.planes = {edge.planes[0] + 1, edge.planes[1] + 1};
   }
   rough.edges.insert(rough.edges.begin(), {{0, 1}, 3.0});
-  const Primitives result = refinePlanes(scene.cloud, rough, test::undistortedSensor());
+  const Primitives result =
+      refinePlanes(scene.cloud, rough, SensorModel(), test::undistortedSensor());
   ASSERT_EQ(result.planes.size(), 6U);
   EXPECT_EQ(result.edges.size(), 12U);
   EXPECT_LT(angleBetween(result.planes[0].plane, scene.planes[0]), 1e-6);
@@ -219,7 +223,7 @@ TEST(RefinePlanes, OutliersDoNotMovePlanes) {
   const SyntheticScene scene =
       test::sampleScene(room(), Eigen::Vector3d::Zero(), Eigen::Isometry3d::Identity(), options);
   const Primitives result = refinePlanes(scene.cloud, test::roughGraph(scene, 0.03, 0.03, random),
-                                         test::undistortedSensor());
+                                         SensorModel(), test::undistortedSensor());
   ASSERT_EQ(result.planes.size(), 6U);
   for (std::size_t k = 0; k < 6; ++k) {
     // σ/√N over some 3,000 samples is 0.05 mm.
@@ -230,11 +234,11 @@ TEST(RefinePlanes, OutliersDoNotMovePlanes) {
 
 TEST(RefinePlanes, DegenerateInputGivesFewerPlanes) {
   const RefinementParams params;
-  EXPECT_TRUE(refinePlanes(OrientedCloud(), PlaneGraph(), params).planes.empty());
+  EXPECT_TRUE(refinePlanes(OrientedCloud(), PlaneGraph(), SensorModel(), params).planes.empty());
   test::Random random(10);
   PlaneGraph graph;
   graph.nodes.resize(3);
-  const Primitives empty_cloud = refinePlanes(OrientedCloud(), graph, params);
+  const Primitives empty_cloud = refinePlanes(OrientedCloud(), graph, SensorModel(), params);
   EXPECT_TRUE(empty_cloud.planes.empty());
   EXPECT_TRUE(empty_cloud.converged);
   OrientedCloud same;
@@ -246,7 +250,7 @@ TEST(RefinePlanes, DegenerateInputGivesFewerPlanes) {
     same.weights.push_back(1.0f);
   }
   graph.edges = {{{0, 1}, 1.0}};
-  const Primitives one_point = refinePlanes(same, graph, params);
+  const Primitives one_point = refinePlanes(same, graph, SensorModel(), params);
   ASSERT_LE(one_point.planes.size(), 1U);
   for (const PlanePrimitive& plane : one_point.planes) {
     EXPECT_TRUE(plane.plane.coefficients().allFinite());
@@ -257,13 +261,16 @@ TEST(RefinePlanes, DegenerateInputGivesFewerPlanes) {
 TEST(RefinePlanes, RejectsWrongInput) {
   PlaneGraph graph;
   graph.edges = {{{0, 1}, 1.0}};
-  EXPECT_THROW(refinePlanes(OrientedCloud(), graph, RefinementParams()), std::invalid_argument);
+  EXPECT_THROW(refinePlanes(OrientedCloud(), graph, SensorModel(), RefinementParams()),
+               std::invalid_argument);
   OrientedCloud cloud;
   cloud.points.resize(3);
-  EXPECT_THROW(refinePlanes(cloud, PlaneGraph(), RefinementParams()), std::invalid_argument);
+  EXPECT_THROW(refinePlanes(cloud, PlaneGraph(), SensorModel(), RefinementParams()),
+               std::invalid_argument);
   RefinementParams params;
   params.normal_gate = 2.0;
-  EXPECT_THROW(refinePlanes(OrientedCloud(), PlaneGraph(), params), std::invalid_argument);
+  EXPECT_THROW(refinePlanes(OrientedCloud(), PlaneGraph(), SensorModel(), params),
+               std::invalid_argument);
 }
 
 }  // namespace

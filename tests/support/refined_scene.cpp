@@ -12,7 +12,6 @@ namespace opp::test {
 
 RefinementParams undistortedSensor() {
   RefinementParams params;
-  params.noise_correlation = 0.0;
   params.systematic_angle = 0.0;
   // Thousands of relations are tested over all scenes; 3 sigmas would deny some by chance.
   params.test_sigmas = 5.0;
@@ -29,8 +28,8 @@ Rectangles boxFromAllSides(const Eigen::Vector3d& low, const Eigen::Vector3d& hi
 }
 
 Primitives refinedScene(const SyntheticScene& scene, Random& random) {
-  Primitives result =
-      refinePlanes(scene.cloud, roughGraph(scene, 0.03, 0.02, random), undistortedSensor());
+  Primitives result = refinePlanes(scene.cloud, roughGraph(scene, 0.03, 0.02, random),
+                                   SensorModel(), undistortedSensor());
   result.corners = findCorners(scene.cloud, result, CornerParams());
   result.lines = findLines(scene.cloud, result, LineParams());
   return result;

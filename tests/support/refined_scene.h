@@ -10,7 +10,7 @@
 
 namespace opp::test {
 
-/// Parameters for samples with independent noise and no distortion, as synthetic scenes have.
+/// Parameters for samples without distortion, as synthetic scenes have.
 RefinementParams undistortedSensor();
 
 /// The six sides of a box that is seen from outside, from all around: each side is turned so that

@@ -37,7 +37,7 @@ Primitives detectPrimitives(const OrientedCloud& cloud, const PrimitiveParams& p
   laps.voting = stopwatch.lap();
   const PlaneGraph graph = buildPlaneGraph(cloud, hypotheses, params.sensor, params.graph);
   laps.clustering = stopwatch.lap();
-  Primitives primitives = refinePlanes(cloud, graph, params.refinement);
+  Primitives primitives = refinePlanes(cloud, graph, params.sensor, params.refinement);
   laps.refinement = stopwatch.lap();
   primitives.corners = findCorners(cloud, primitives, params.corners);
   laps.corners = stopwatch.lap();

@@ -31,10 +31,11 @@ constexpr int kMaxRestructurings = 3;
 
 class Refiner {
  public:
-  Refiner(const OrientedCloud& cloud, const PlaneGraph& graph, const RefinementParams& params)
+  Refiner(const OrientedCloud& cloud, const PlaneGraph& graph, const SensorModel& sensor,
+          const RefinementParams& params)
       : cloud_(cloud),
         params_(params),
-        samples_(weightedSamples(cloud, params)),
+        samples_(weightedSamples(cloud, sensor)),
         edges_(graph.edges),
         labels_(cloud.size(), -1) {
     for (const PlaneNode& node : graph.nodes) {
@@ -252,10 +253,11 @@ void check(const OrientedCloud& cloud, const PlaneGraph& graph) {
 }  // namespace
 
 Primitives refinePlanes(const OrientedCloud& cloud, const PlaneGraph& graph,
-                        const RefinementParams& params) {
+                        const SensorModel& sensor, const RefinementParams& params) {
+  validate(sensor);
   validate(params);
   check(cloud, graph);
-  return Refiner(cloud, graph, params).refine();
+  return Refiner(cloud, graph, sensor, params).refine();
 }
 
 }  // namespace opp

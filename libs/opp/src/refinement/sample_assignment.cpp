@@ -17,9 +17,6 @@ constexpr double kExplainedSigmas = 2.0;
 /// (1e-9 m)²: below any sensor's noise, and no division by zero at the origin.
 constexpr double kLeastVariance = 1e-18;
 
-/// Variance of the mean of n measurements of which each two have correlation ρ, over that of one.
-double varianceOfMean(double n, double correlation) { return (1.0 + (n - 1.0) * correlation) / n; }
-
 struct Match {
   std::size_t plane = 0;
   double distance = std::numeric_limits<double>::infinity();  ///< signed, along the group's normal
@@ -38,8 +35,7 @@ void takeNearest(const ParallelGroup& group, double position, Match& best) {
 
 }  // namespace
 
-std::vector<WeightedSample> weightedSamples(const OrientedCloud& cloud,
-                                            const RefinementParams& params) {
+std::vector<WeightedSample> weightedSamples(const OrientedCloud& cloud, const SensorModel& sensor) {
   std::vector<WeightedSample> samples(cloud.size());
   for (std::size_t i = 0; i < cloud.size(); ++i) {
     WeightedSample& sample = samples[i];
@@ -47,10 +43,9 @@ std::vector<WeightedSample> weightedSamples(const OrientedCloud& cloud,
     sample.normal = cloud.normals[i].cast<double>();
     // Coordinates are rounded to float: no distance is better known than that.
     const double rounding = std::numeric_limits<float>::epsilon() * sample.point.norm();
-    const double sigma = static_cast<double>(cloud.sigmas[i]);
     const double count = std::max(1.0, static_cast<double>(cloud.weights[i]));
-    sample.variance = kLeastVariance + rounding * rounding +
-                      sigma * sigma * varianceOfMean(count, params.noise_correlation);
+    const double sigma = sensor.meanSigma(static_cast<double>(cloud.sigmas[i]), count);
+    sample.variance = kLeastVariance + rounding * rounding + sigma * sigma;
   }
   return samples;
 }

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "opp/cloud/sensor_model.h"
 #include "opp/geometry/plane.h"
 #include "opp/geometry/point_cloud.h"
 #include "opp/geometry/point_moments.h"
@@ -19,8 +20,7 @@ struct WeightedSample {
   double variance;  ///< of its offset: of n raw points whose errors are correlated [m²]
 };
 
-std::vector<WeightedSample> weightedSamples(const OrientedCloud& cloud,
-                                            const RefinementParams& params);
+std::vector<WeightedSample> weightedSamples(const OrientedCloud& cloud, const SensorModel& sensor);
 
 /// Sums over the samples of a plane; ω is Tukey's weight in (0, 1].
 struct SampleSums {

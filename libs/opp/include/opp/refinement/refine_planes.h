@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "opp/cloud/sensor_model.h"
 #include "opp/geometry/point_cloud.h"
 #include "opp/graph/plane_graph.h"
 #include "opp/primitives/primitives.h"
@@ -22,10 +23,11 @@ namespace opp {
 ///
 /// Fills planes, families, edges, normal_covariance, labels and converged; lines and corners stay
 /// empty. Edges are those of `graph` that the data support. Planes keep their order in `graph`.
-/// An empty cloud or graph gives no planes. O(samples × families) per pass; deterministic.
+/// An empty cloud or graph gives no planes. Of `sensor` only the noise's correlation is used: how
+/// noisy points are, the cloud says. O(samples × families) per pass; deterministic.
 /// \throws std::invalid_argument for parameters out of range, edges that name no node, or vectors
 /// of `cloud` of different lengths.
 Primitives refinePlanes(const OrientedCloud& cloud, const PlaneGraph& graph,
-                        const RefinementParams& params);
+                        const SensorModel& sensor, const RefinementParams& params);
 
 }  // namespace opp

@@ -18,9 +18,6 @@ struct RefinementParams {
   double normal_gate = degToRad(25.0);
   /// Tukey's biweight: 4.685 keeps 95 % of the efficiency of least squares on Gaussian noise.
   double outlier_cutoff = 4.685;
-  /// Neighbouring raw points share part of their error (correlation window of structured light,
-  /// quantization), so the mean of n of them is worth n / (1 + (n − 1) ρ) independent ones: ρ.
-  double noise_correlation = 0.1;
   /// Lens and depth distortion bends large walls: the angle between two measured planes errs by
   /// this much (standard deviation) however many points they have. 0.25° is 4 mm over 1 m, what
   /// calibrated structured-light cameras show; near 0 for a simulated or ideal sensor.
@@ -40,8 +37,6 @@ struct RefinementParams {
                            "a sample belongs to a plane only if their normals differ by less"});
     f(p.outlier_cutoff, Field{"outlier_cutoff", "", 2.0, 20.0,
                               "samples farther from a plane than this many sigmas are outliers"});
-    f(p.noise_correlation, Field{"noise_correlation", "", 0.0, 1.0,
-                                 "correlation of the errors of neighbouring raw points"});
     f(p.systematic_angle, Field{"systematic_angle", "rad", 0.0, 0.2,
                                 "error of angles between planes that more points do not reduce"});
     f(p.max_turn, Field{"max_turn", "rad", 0.01, degToRad(90.0),
