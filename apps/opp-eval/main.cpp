@@ -85,6 +85,9 @@ void run(CommandLine& line) {
       "Smallest true label that is a region (default: 10 for .pcd, as in SynPEB, else 0)", false, 0,
       &not_negative, line);
   opp::apps::ParameterFlags parameters(line);
+  // Every program takes these two; comparing is quick, silent and sequential.
+  opp::apps::ThreadsFlag threads(line);
+  opp::apps::QuietFlag quiet(line);
   TCLAP::SwitchArg list("", "list-parameters", "Print all thresholds and end", line);
   TCLAP::SwitchArg as_json("", "json", "Print JSON instead of tables", line);
   line.parse();

@@ -52,6 +52,7 @@ Request parse(opp::apps::CommandLine& line) {
   Text poses("", "poses", "File of true poses (default: where the set has it)", false, "", "FILE",
              line);
   TCLAP::SwitchArg skip("", "skip-missing", "Leave out frames whose file is missing", line);
+  opp::apps::ThreadsFlag threads(line);  // every program takes it; reading is sequential
   opp::apps::QuietFlag quiet(line);
   line.parse();
 

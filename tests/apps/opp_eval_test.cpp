@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The opp-mapping authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "opp/mapping/core/trajectory.h"
 #include "opp/mapping/core/move_planar_map.h"
+#include "opp/mapping/core/trajectory.h"
 #include "opp/mapping/io/cloud_file.h"
 #include "opp/mapping/io/planar_map_json.h"
 #include "opp/mapping/io/tum_trajectory.h"
@@ -264,6 +264,8 @@ TEST_F(OppEval, WrongUsageEndsWithTwo) {
       runApp("opp-eval", {"--gt", gt, "--est", gt, "--set", "trajectory_error.rpe_distance=far"})
           .exit_code,
       2);
+  EXPECT_EQ(runApp("opp-eval", {"--gt", gt, "--est", gt, "--quiet", "--threads", "1"}).exit_code,
+            0);
   EXPECT_EQ(runApp("opp-eval", {"--help"}).exit_code, 0);
   EXPECT_EQ(runApp("opp-eval", {"--version"}).exit_code, 0);
 }
