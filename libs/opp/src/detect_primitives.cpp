@@ -8,30 +8,13 @@
 #include "opp/primitives/find_lines.h"
 #include "opp/refinement/refine_planes.h"
 
-#include <chrono>
+#include "primitives/stopwatch.h"
 
 namespace opp {
-namespace {
-
-class Stopwatch {
- public:
-  /// Seconds since construction or the last lap.
-  double lap() {
-    const auto now = std::chrono::steady_clock::now();
-    const std::chrono::duration<double> elapsed = now - start_;
-    start_ = now;
-    return elapsed.count();
-  }
-
- private:
-  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
-};
-
-}  // namespace
 
 Primitives detectPrimitives(const OrientedCloud& cloud, const PrimitiveParams& params, int threads,
                             StageTimings* timings) {
-  StageTimings laps;
+  StageTimings laps = timings == nullptr ? StageTimings() : *timings;
   Stopwatch stopwatch;
   const OppHypotheses hypotheses = detectOpps(cloud, params.sensor, params.voting, threads);
   laps.voting = stopwatch.lap();

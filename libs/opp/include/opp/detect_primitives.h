@@ -12,8 +12,8 @@ namespace opp {
 /// Planes, their orthogonality, lines and corners in one scan (Sommer et al. 2020, III and IV):
 /// votes for orthogonal plane pairs, their graph, its joint refinement, corners at the graph's
 /// triangles and lines along its edges. Everything is in the cloud's frame. Empty for clouds of
-/// fewer than three samples. Same result for every `threads` (≤ 0: all cores). Fills `timings`
-/// unless null. \throws std::invalid_argument if a parameter is out of range.
+/// fewer than three samples. Same result for every `threads` (≤ 0: all cores). Fills its
+/// stages in `timings` unless null. \throws std::invalid_argument if a parameter is out of range.
 Primitives detectPrimitives(const OrientedCloud& cloud, const PrimitiveParams& params,
                             int threads = 1, StageTimings* timings = nullptr);
 

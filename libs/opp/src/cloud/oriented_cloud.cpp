@@ -7,10 +7,12 @@
 #include "cloud/grid_patches.h"
 #include "cloud/patch_normals.h"
 #include "cloud/voxel_patches.h"
+#include "primitives/stopwatch.h"
 
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
+#include <utility>
 
 namespace opp {
 namespace {
@@ -106,15 +108,7 @@ double medianSigma(std::vector<float> sigmas) {
   return static_cast<double>(*middle);
 }
 
-}  // namespace
-
-OrientedCloud makeOrientedCloud(const PointCloud& cloud, const SensorModel& sensor,
-                                const SamplingParams& params) {
-  validate(sensor);
-  validate(params);
-  check(cloud);
-  OrientedCloud dense = denseSurface(cloud, sensor, params);
-  dense.viewpoint = cloud.viewpoint;
+OrientedCloud thinned(OrientedCloud dense, const SamplingParams& params) {
   // Samples at least d apart, drawn one by one, end at 0.547·4/π = 0.70 per d² (jamming limit of
   // discs, Feder 1980); cells of edge h number one per h² of surface.
   const double distance_per_edge = std::sqrt(0.547 * 4.0 / kPi);
@@ -124,6 +118,24 @@ OrientedCloud makeOrientedCloud(const PointCloud& cloud, const SensorModel& sens
       std::max(distance_per_edge * edge, params.spacing_per_sigma * medianSigma(dense.sigmas));
   if (!(spacing > 0.0)) return dense;
   return sampleEvenly(dense, spacing, params);
+}
+
+}  // namespace
+
+OrientedCloud makeOrientedCloud(const PointCloud& cloud, const SensorModel& sensor,
+                                const SamplingParams& params, StageTimings* timings) {
+  validate(sensor);
+  validate(params);
+  check(cloud);
+  StageTimings laps = timings == nullptr ? StageTimings() : *timings;
+  Stopwatch stopwatch;
+  OrientedCloud dense = denseSurface(cloud, sensor, params);
+  dense.viewpoint = cloud.viewpoint;
+  laps.normals = stopwatch.lap();
+  OrientedCloud samples = thinned(std::move(dense), params);
+  laps.sampling = stopwatch.lap();
+  if (timings != nullptr) *timings = laps;
+  return samples;
 }
 
 }  // namespace opp

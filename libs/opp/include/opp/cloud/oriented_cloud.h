@@ -5,6 +5,7 @@
 #include "opp/cloud/sampling_params.h"
 #include "opp/cloud/sensor_model.h"
 #include "opp/geometry/point_cloud.h"
+#include "opp/primitives/stage_timings.h"
 
 namespace opp {
 
@@ -18,10 +19,11 @@ namespace opp {
 /// not guessed. All normals are turned to the viewpoint.
 ///
 /// Empty result if nothing is left (no points, a line of points). Deterministic, one thread.
-/// O(points) if organized or with normals, else O(points log points).
+/// O(points) if organized or with normals, else O(points log points). Fills its stages in `timings`
+/// unless null.
 /// \throws std::invalid_argument if rows·cols or the number of normals does not fit the points, or
 /// a parameter is out of range.
 OrientedCloud makeOrientedCloud(const PointCloud& cloud, const SensorModel& sensor,
-                                const SamplingParams& params);
+                                const SamplingParams& params, StageTimings* timings = nullptr);
 
 }  // namespace opp

@@ -4,8 +4,11 @@
 
 namespace opp {
 
-/// Wall time of each stage of `detectPrimitives` [s].
+/// Wall time of each stage from raw points to primitives [s]: the first two are of
+/// `makeOrientedCloud`, the others of `detectPrimitives`.
 struct StageTimings {
+  double normals = 0.0;
+  double sampling = 0.0;
   double voting = 0.0;
   double clustering = 0.0;
   double refinement = 0.0;
