@@ -11,6 +11,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
@@ -195,6 +196,47 @@ TEST(RefinePlanes, KeepsParallelSurfacesThatNoiseCanTellApart) {
   ASSERT_EQ(result.planes.size(), 7U);
   EXPECT_EQ(result.planes[0].family, result.planes[6].family);
   EXPECT_NEAR(std::abs(result.planes[6].plane.d() - result.planes[0].plane.d()), 0.015, 0.001);
+}
+
+TEST(RefinePlanes, SplitsAPlaneThatWasFittedBetweenTwoSurfaces) {
+  test::Random random(11);
+  Rectangles rectangles = room();
+  rectangles.push_back({{-1.985, 0.1, 0.2}, {0.0, 1.0, 0.0}, {0.0, 0.0, 0.8}});
+  const SyntheticScene scene = sampled(rectangles, 0.002, random);
+  ASSERT_EQ(scene.planes.size(), 7U);
+  PlaneGraph rough = test::roughGraph(scene, 0.01, 0.01, random);
+  rough.nodes.pop_back();  // nobody has seen the board
+  const auto gone = [](const OrthogonalityEdge& edge) { return edge.planes[1] == 6; };
+  rough.edges.erase(std::remove_if(rough.edges.begin(), rough.edges.end(), gone),
+                    rough.edges.end());
+  const Primitives result =
+      refinePlanes(scene.cloud, rough, SensorModel(), test::undistortedSensor());
+  ASSERT_EQ(result.planes.size(), 7U);
+  EXPECT_TRUE(result.converged);
+  EXPECT_EQ(result.planes[0].family, result.planes[6].family);
+  // 1,000 samples with 2 mm: 0.06 mm each.
+  EXPECT_NEAR(std::abs(result.planes[6].plane.d() - result.planes[0].plane.d()), 0.015, 0.0005);
+}
+
+TEST(RefinePlanes, DropsStripsOfCylinders) {
+  test::Random random(12);
+  OrientedCloud cloud;
+  cloud.spacing = 0.02;
+  cloud.viewpoint = Eigen::Vector3f(2.0F, 0.0F, 0.0F);
+  for (int i = 0; i < 2000; ++i) {
+    const double angle = random.uniform(-1.0, 1.0), height = random.uniform(-0.5, 0.5);
+    const Eigen::Vector3d normal(std::cos(angle), std::sin(angle), 0.0);
+    cloud.points.push_back(Eigen::Vector3d(0.3 * normal + height * Eigen::Vector3d::UnitZ() +
+                                           random.normal(0.003) * normal)
+                               .cast<float>());
+    cloud.normals.push_back((normal + random.vector(0.1)).normalized().cast<float>());
+    cloud.sigmas.push_back(0.003F);
+    cloud.weights.push_back(1.0F);
+  }
+  PlaneGraph rough;
+  rough.nodes.resize(1);
+  rough.nodes[0].plane = Plane::fromPointNormal({0.29, 0.0, 0.0}, {1.0, 0.0, 0.0});
+  EXPECT_TRUE(refinePlanes(cloud, rough, SensorModel(), RefinementParams()).planes.empty());
 }
 
 TEST(RefinePlanes, DropsPlanesWithoutSamplesAndRenumbersEdges) {
