@@ -68,11 +68,12 @@ FrameResult Mapper::start(ScanFeatures scan,
 /// moves, then no guess.
 MatchResult Mapper::localize(const ScanFeatures& scan, const PosePrior& predicted) const {
   MatchResult best = matchScan(scan, *local_map_, predicted, params_.registration);
-  if (best.overlap >= params_.frontend.min_overlap) return best;
+  if (best.overlap >= params_.frontend.doubtful_overlap) return best;
+  // A wrong pose can agree with a good part of a map: the floor fits at many places.
   MatchResult wide =
       matchScan(scan, *local_map_, motion_.lastPose(scan.timestamp), params_.registration);
   if (wide.overlap > best.overlap) best = std::move(wide);
-  if (best.overlap >= params_.frontend.min_overlap) return best;
+  if (best.overlap >= params_.frontend.doubtful_overlap) return best;
   MatchResult global = relocalize(scan);
   return global.overlap > best.overlap ? global : best;
 }

@@ -20,6 +20,7 @@ struct FrontendParams {
   double odometry_noise_translation = 0.002;
   double odometry_noise_rotation = degToRad(0.2);
   double min_overlap = 0.3;
+  double doubtful_overlap = 0.6;
   double keyframe_overlap = 0.8;
   double keyframe_rotation = degToRad(25.0);
   int local_keyframes = 15;
@@ -41,6 +42,9 @@ struct FrontendParams {
       Field{"odometry_noise_rotation", "rad", 1e-6, 1.0, "odometry error of a step, at least"});
     f(p.min_overlap, Field{"min_overlap", "", 0.0, 1.0,
                            "a scan of which a smaller share agrees with the map is lost"});
+    f(p.doubtful_overlap,
+      Field{"doubtful_overlap", "", 0.0, 1.0,
+            "if a smaller share agrees, the last pose is tried beside the prediction"});
     f(p.keyframe_overlap, Field{"keyframe_overlap", "", 0.0, 1.0,
                                 "a scan of which a smaller share agrees becomes a keyframe"});
     f(p.keyframe_rotation, Field{"keyframe_rotation", "rad", 0.01, 3.1415,
