@@ -155,15 +155,15 @@ void writeCsv(const std::string& file, const std::vector<Frame>& frames,
               const std::vector<PairResult>& results) {
   std::ofstream csv(file);
   csv << "target,source,overlap,six_dof,outcome,dof,angle_deg,distance_m,score,conflict,"
-         "runner_up,corners,ms\n";
+         "clarity,corners,ms\n";
   for (const PairResult& r : results) {
     const GlobalAlignment& a = r.alignment;
     csv << frames[r.target].features.scan_index << ',' << frames[r.source].features.scan_index
         << ',' << r.overlap << ',' << r.six_dof << ',' << static_cast<int>(a.outcome) << ','
         << a.observed_dof << ',' << radToDeg(r.angle) << ',' << r.distance << ','
         << (a.hypotheses.empty() ? 0.0 : a.hypotheses[0].score) << ','
-        << (a.hypotheses.empty() ? 0.0 : a.hypotheses[0].conflict) << ',' << a.runner_up_ratio
-        << ',' << a.corner_matches.size() << ',' << r.milliseconds << '\n';
+        << (a.hypotheses.empty() ? 0.0 : a.hypotheses[0].conflict) << ',' << a.clarity << ','
+        << a.corner_matches.size() << ',' << r.milliseconds << '\n';
   }
 }
 

@@ -29,7 +29,7 @@ void expectPose(const GlobalAlignment& result, const Eigen::Isometry3d& truth, d
                 double distance, std::uint64_t seed) {
   ASSERT_EQ(result.outcome, AlignmentOutcome::kAligned)
       << "seed " << seed << ": " << describe(result.outcome) << ", overlap " << result.overlap
-      << ", dof " << result.observed_dof << ", runner-up " << result.runner_up_ratio;
+      << ", dof " << result.observed_dof << ", clarity " << result.clarity;
   const Vector6d error = difference(truth, result.target_from_source);
   EXPECT_LT(error.head<3>().norm(), angle) << "seed " << seed;
   EXPECT_LT(error.tail<3>().norm(), distance) << "seed " << seed;
@@ -139,7 +139,7 @@ TEST(AlignGlobally, RepeatsItselfToTheLastBit) {
     const GlobalAlignment again = alignGlobally(target, source, GlobalAlignmentParams{});
     EXPECT_EQ(again.target_from_source.matrix(), first.target_from_source.matrix());
     EXPECT_EQ(again.covariance, first.covariance);
-    EXPECT_EQ(again.runner_up_ratio, first.runner_up_ratio);
+    EXPECT_EQ(again.clarity, first.clarity);
   }
 }
 
@@ -153,7 +153,7 @@ TEST(AlignGlobally, RejectsWhatTheCallerGotWrong) {
   unspaced.cloud_in_body.spacing = 0.0;
   EXPECT_THROW(alignGlobally(unspaced, room, GlobalAlignmentParams{}), std::invalid_argument);
   GlobalAlignmentParams params;
-  params.min_advantage = 2.0;
+  params.min_clarity = 2.0;
   EXPECT_THROW(alignGlobally(room, room, params), std::invalid_argument);
 }
 

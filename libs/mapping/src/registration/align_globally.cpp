@@ -28,6 +28,7 @@ struct Candidate {
   double score = 0.0;
   Verification verification;
   Matrix6d information = Matrix6d::Zero();
+  Vector6d observability = Vector6d::Zero();
 };
 
 void requireUsable(const ScanFeatures& scan, const char* which) {
@@ -62,6 +63,7 @@ class Aligner {
       const RefinedPose refined = refinePose(target_, source_, c.target_from_source, params_);
       c.target_from_source = refined.target_from_source;
       c.information = refined.information;
+      c.observability = refined.observability;
     }
     verify(candidates, refined_slack_);
     candidates = distinct(std::move(candidates), candidates.size());
@@ -146,12 +148,10 @@ class Aligner {
       return;
     }
     result.observed_dof = observedDof(best);
-    if (candidates.size() > 1) {
-      result.runner_up_ratio = std::max(0.0, candidates[1].score / best.score);
-    }
+    result.clarity = clarityOfBest(candidates);
     if (result.observed_dof < 6) {
       result.outcome = AlignmentOutcome::kInsufficient;
-    } else if (!isUnique(candidates)) {
+    } else if (result.clarity < params_.min_clarity) {
       result.outcome = AlignmentOutcome::kAmbiguous;
     } else {
       result.outcome = AlignmentOutcome::kAligned;
@@ -160,29 +160,32 @@ class Aligner {
     }
   }
 
-  bool isUnique(const std::vector<Candidate>& candidates) const {
-    return std::all_of(candidates.begin() + 1, candidates.end(), [&](const Candidate& other) {
-      return clearlyBetter(candidates.front().verification, other.verification, params_);
-    });
+  /// Against the strongest of the other candidates.
+  static double clarityOfBest(const std::vector<Candidate>& candidates) {
+    double least = 1.0;
+    for (std::size_t k = 1; k < candidates.size(); ++k) {
+      least = std::min(least, clarity(candidates[0].verification, candidates[k].verification));
+    }
+    return least;
   }
 
-  /// Degrees of freedom in which the best pose cannot be moved by a distinct step without the
-  /// scans agreeing clearly less: the continuous form of having no runner-up.
+  /// Degrees of freedom that enough samples see and in which the best pose cannot be moved by a
+  /// distinct step without the scans agreeing less: the continuous form of having no rival.
   int observedDof(const Candidate& best) const {
     const Eigen::SelfAdjointEigenSolver<Matrix6d> eigen(scaled(best.information));
-    int observed = 0;
+    int firm = 0;
     for (int k = 0; k < 6; ++k) {
-      Vector6d step = unscaled(eigen.eigenvectors().col(k));
-      const bool flat = slides(best, step) || slides(best, -step);
-      observed += flat ? 0 : 1;
+      const Vector6d step = unscaled(eigen.eigenvectors().col(k));
+      if (!slides(best, step) && !slides(best, -step)) ++firm;
     }
-    return observed;
+    const auto seen = (best.observability.array() >= params_.min_observability).count();
+    return std::min(firm, static_cast<int>(seen));
   }
 
   bool slides(const Candidate& best, const Vector6d& step) const {
     const Eigen::Isometry3d moved = retract(best.target_from_source, step);
-    return !clearlyBetter(best.verification,
-                          verifyPose(target_, source_, moved, refined_slack_, params_), params_);
+    const Verification there = verifyPose(target_, source_, moved, refined_slack_, params_);
+    return clarity(best.verification, there) < params_.min_slide_clarity;
   }
 
   /// (ω, v) in units of the distinct rotation and translation, so that eigenvectors compare alike.

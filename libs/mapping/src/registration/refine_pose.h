@@ -10,15 +10,18 @@
 
 namespace opp::mapping {
 
-/// A refined pose with the information that the shared surfaces give about it.
+/// A refined pose with what the shared surfaces tell about it.
 struct RefinedPose {
   Eigen::Isometry3d target_from_source = Eigen::Isometry3d::Identity();
   Matrix6d information = Matrix6d::Zero();  ///< of (ω, v), see `retract`
+  /// Eigenvalues, ascending, of the mean of jjᵀ over the matched samples, where j is the normal and
+  /// its moment about their middle in units of their mean distance from it: the share of samples
+  /// that see a motion in each of six directions. Zero: nothing fixes that direction.
+  Vector6d observability = Vector6d::Zero();
 };
 
-/// Point-to-plane refinement of a pose that is right to about a search cell: first the verification
-/// samples of the source alone, then planes that both scans share through the moments of all their
-/// samples (four numbers a plane) and the other samples as points. Robust, annealed.
+/// Point-to-plane refinement (robust, annealed) of a pose that is right to about a search cell: the
+/// verification samples of the source against the planes that hold the target's samples nearby.
 /// Directions that nothing fixes stay as they are.
 RefinedPose refinePose(const ScanModel& target, const ScanModel& source,
                        const Eigen::Isometry3d& target_from_source,

@@ -38,6 +38,16 @@ std::vector<PlaneDirection> directionsOf(const std::vector<PlanePrimitive>& plan
   return directions;
 }
 
+/// The same indices in an order whose every part is spread over all: steps of the golden section.
+std::vector<std::uint32_t> spread(const std::vector<std::uint32_t>& indices) {
+  const std::size_t count = indices.size();
+  std::size_t step = std::max<std::size_t>(1, static_cast<std::size_t>(0.618 * double(count)));
+  while (std::gcd(step, count) != 1) ++step;
+  std::vector<std::uint32_t> result;
+  for (std::size_t k = 0; k < count; ++k) result.push_back(indices[k * step % count]);
+  return result;
+}
+
 }  // namespace
 
 ScanModel::ScanModel(const ScanFeatures& scan, const GlobalAlignmentParams& params)
@@ -46,8 +56,8 @@ ScanModel::ScanModel(const ScanFeatures& scan, const GlobalAlignmentParams& para
       voxels(scan.cloud_in_body, params.cell_ratio * scan.cloud_in_body.spacing),
       depth(scan.cloud_in_body),
       samples(sampleNormalSpace(scan.cloud_in_body, static_cast<std::size_t>(params.samples))),
-      screening_samples(sampleNormalSpace(scan.cloud_in_body,
-                                          static_cast<std::size_t>(params.screening_samples))) {}
+      screening_samples(spread(sampleNormalSpace(
+          scan.cloud_in_body, static_cast<std::size_t>(params.screening_samples)))) {}
 
 Plane ScanModel::surfaceAt(std::uint32_t sample) const {
   const int label = labelOf(sample);

@@ -36,7 +36,7 @@ struct ScanModel {
   VoxelIndex voxels;
   DepthMap depth;
   std::vector<std::uint32_t> samples;            ///< even over directions of normals, ascending
-  std::vector<std::uint32_t> screening_samples;  ///< the same, fewer
+  std::vector<std::uint32_t> screening_samples;  ///< fewer, in an order fit for giving up early
 };
 
 }  // namespace opp::mapping

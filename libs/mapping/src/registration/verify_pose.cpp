@@ -55,6 +55,11 @@ double margin(const Agreement& a) {
   return a.samples == 0 ? 0.0 : static_cast<double>(a.agreeing - a.conflicting) / a.samples;
 }
 
+/// After so many screening samples a pose that has less than this share of what it needs is
+/// dropped: the odds of a good pose (a binomial variable) to fail here are below 1 %.
+constexpr int kFirstLook = 24;
+constexpr double kHopeful = 0.6;
+
 }  // namespace
 
 double Verification::score() const { return 0.5 * (margin(of_source) + margin(of_target)); }
@@ -73,25 +78,24 @@ double Verification::rms() const {
   return std::sqrt((of_source.squared_distance + of_target.squared_distance) / agreeing);
 }
 
-bool clearlyBetter(const Verification& a, const Verification& b,
-                   const GlobalAlignmentParams& params) {
+double clarity(const Verification& a, const Verification& b) {
   int advantage = 0, telling = 0;
   for (std::size_t i = 0; i < a.votes.size(); ++i) {
-    const int difference = a.votes[i] - b.votes[i];
-    advantage += difference;
-    telling += std::abs(difference);
+    advantage += a.votes[i] - b.votes[i];
+    telling += std::abs(a.votes[i] - b.votes[i]);
   }
-  return advantage > params.min_advantage * telling &&
-         advantage > params.min_evidence * static_cast<double>(a.votes.size());
+  if (telling == 0) return 0.0;
+  return advantage / std::sqrt(static_cast<double>(telling) * static_cast<double>(a.votes.size()));
 }
 
 int screenPose(const ScanModel& target, const ScanModel& source,
                const Eigen::Isometry3f& target_from_source, float min_cosine, int at_least) {
-  int agreeing = 0;
-  int left = static_cast<int>(source.screening_samples.size());
+  const int count = static_cast<int>(source.screening_samples.size());
+  int agreeing = 0, seen = 0;
   for (const std::uint32_t i : source.screening_samples) {
-    if (agreeing + left < at_least) return 0;
-    --left;
+    if (agreeing + count - seen < at_least) return 0;
+    if (seen == kFirstLook && agreeing * count < kHopeful * at_least * seen) return 0;
+    ++seen;
     const Eigen::Vector3f point = target_from_source * source.cloud().points[i];
     const Eigen::Vector3f normal = target_from_source.linear() * source.cloud().normals[i];
     if (target.voxels.near(point, normal, min_cosine) >= 0) ++agreeing;

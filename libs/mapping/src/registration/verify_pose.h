@@ -33,11 +33,11 @@ struct Verification {
   double rms() const;       ///< of agreeing samples [m]
 };
 
-/// Do the samples that tell two poses apart speak for `a`? Samples that say the same of both do not
-/// count, so that a small difference in two otherwise equal views (furniture in a symmetric room)
-/// decides, and noise does not.
-bool clearlyBetter(const Verification& a, const Verification& b,
-                   const GlobalAlignmentParams& params);
+/// How clearly the samples speak for pose a against pose b, −1 to 1: their advantage (votes for a
+/// minus votes for b) over the geometric mean of all samples and of those that tell the two apart.
+/// So neither a small difference in two otherwise equal views (furniture in a symmetric room) is
+/// lost, nor does noise decide.
+double clarity(const Verification& a, const Verification& b);
 
 /// Number of the source's screening samples that have a target sample of like normal in reach: a
 /// first, cheap look at a pose. Gives up, with 0, once `at_least` is out of reach.

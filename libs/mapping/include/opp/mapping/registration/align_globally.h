@@ -45,10 +45,13 @@ struct GlobalAlignment {
   /// Set for kAligned only; the identity otherwise: no pose is invented.
   Eigen::Isometry3d target_from_source = Eigen::Isometry3d::Identity();
   Matrix6d covariance = Matrix6d::Zero();  ///< of (ω, v), see `retract`; kAligned only
-  int observed_dof = 0;          ///< degrees of freedom that the shared surfaces fix, 0–6
-  double overlap = 0.0;          ///< of the best hypothesis
-  double rms = 0.0;              ///< distance of agreeing samples at the best hypothesis [m]
-  double runner_up_ratio = 0.0;  ///< score of the second best distinct pose over the best, 0–1
+  int observed_dof = 0;  ///< degrees of freedom that the shared surfaces fix, 0–6
+  double overlap = 0.0;  ///< of the best hypothesis
+  double rms = 0.0;      ///< distance of agreeing samples at the best hypothesis [m]
+  /// How clearly the samples prefer the best pose to every other that was tried: votes for it minus
+  /// votes for the other, over the geometric mean of all samples and of those that tell the two
+  /// apart. Below 0.2 several poses explain the scans.
+  double clarity = 1.0;
   std::vector<CornerMatch> corner_matches;      ///< at the best hypothesis
   std::vector<AlignmentHypothesis> hypotheses;  ///< distinct, best first; for callers who know more
 };

@@ -26,9 +26,10 @@ struct GlobalAlignmentParams {
   double distinct_rotation = degToRad(8.0);
   double distinct_translation = 0.25;
   double min_overlap = 0.25;
-  double max_conflict = 0.12;
-  double min_advantage = 0.3;
-  double min_evidence = 0.03;
+  double max_conflict = 0.06;
+  double min_clarity = 0.2;
+  double min_slide_clarity = 0.09;
+  double min_observability = 0.005;
 
   template <typename Self, typename F>
   static void visit(Self&& p, F&& f) {
@@ -57,11 +58,14 @@ struct GlobalAlignmentParams {
       Field{"min_overlap", "", 0.0, 1.0, "share of the smaller scan that has to agree"});
     f(p.max_conflict, Field{"max_conflict", "", 0.0, 1.0,
                             "share of conflicts with free space among all that speaks"});
-    f(p.min_advantage, Field{"min_advantage", "", 0.0, 1.0,
-                             "of the samples that tell two poses apart, so many more (share) must "
-                             "speak for the better one"});
-    f(p.min_evidence, Field{"min_evidence", "", 0.0, 1.0,
-                            "and so many more of all samples, else the answer is: ambiguous"});
+    f(p.min_clarity, Field{"min_clarity", "", 0.0, 1.0,
+                           "how clearly the samples must prefer the best pose to every other, else "
+                           "the answer is: ambiguous"});
+    f(p.min_slide_clarity, Field{"min_slide_clarity", "", 0.0, 1.0,
+                                 "and to itself moved by a distinct step in any direction, else "
+                                 "that direction is not observed"});
+    f(p.min_observability, Field{"min_observability", "", 0.0, 0.1,
+                                 "share of the samples that must see a motion in each direction"});
   }
 };
 
