@@ -5,28 +5,12 @@
 #include "opp/mapping/backend/optimize_map.h"
 #include "opp/mapping/frontend/insert_keyframe.h"
 #include "opp/mapping/frontend/merge_landmarks.h"
-#include "opp/mapping/registration/align_globally.h"
 
 #include <algorithm>
-#include <numeric>
 #include <utility>
 
 namespace opp::mapping {
-namespace {
-
-/// Where a keyframe looks: the mean of what it saw. Tells nearness of views for cameras and lidars
-/// alike.
-Eigen::Vector3d viewCentre(const Keyframe& keyframe) {
-  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-  for (const Eigen::Vector3f& point : keyframe.features.cloud_in_body.points)
-    sum += point.cast<double>();
-  return keyframe.map_from_body *
-         Eigen::Vector3d(sum / static_cast<double>(keyframe.features.cloud_in_body.size()));
-}
-
-}  // namespace
-
-Mapper::Mapper(const MapperParams& params) : params_(params), motion_(params.frontend) {}
+Mapper::Mapper(const MapperParams& params) : params_(params), tracker_(params) {}
 
 FrameResult Mapper::add(ScanFeatures scan, const std::optional<Eigen::Isometry3d>& odom_from_body) {
   if (scan.cloud_in_body.size() == 0) return {};
@@ -34,20 +18,15 @@ FrameResult Mapper::add(ScanFeatures scan, const std::optional<Eigen::Isometry3d
 
   const double timestamp = scan.timestamp;
   const std::size_t index = scan.scan_index;
-  const PosePrior prior = motion_.predict(timestamp, odom_from_body);
-  const MatchResult match = localize(scan, prior);
-  FrameResult result{match.overlap >= params_.frontend.min_overlap, false, match.overlap,
-                     match.rms};
+  const TrackResult track = tracker_.track(scan, odom_from_body, map_);
+  FrameResult result{track.localized(), track.wants_keyframe, track.match.overlap, track.match.rms};
   if (!result.localized) return result;
-
-  motion_.update({timestamp, match.map_from_body}, odom_from_body);
-  result.is_keyframe = wantsKeyframe(match);
   if (result.is_keyframe) {
-    addKeyframe(std::move(scan), match);
-    motion_.correct(map_.keyframes.back().map_from_body);
+    addKeyframe(std::move(scan), track.match);
+    tracker_.correct(map_.keyframes.back().map_from_body);
     follow(timestamp, index, map_.keyframes.back().map_from_body);
   } else {
-    follow(timestamp, index, match.map_from_body);
+    follow(timestamp, index, track.match.map_from_body);
   }
   return result;
 }
@@ -58,43 +37,10 @@ FrameResult Mapper::start(ScanFeatures scan,
   match.map_from_body = initial_pose_;
   const double timestamp = scan.timestamp;
   const std::size_t index = scan.scan_index;
-  motion_.update({timestamp, initial_pose_}, odom_from_body);
+  tracker_.start({timestamp, initial_pose_}, odom_from_body);
   addKeyframe(std::move(scan), match);
   follow(timestamp, index, initial_pose_);
   return {true, true, 1.0, 0.0};
-}
-
-/// The ladder of DESIGN 3: prediction, then the last pose with no more known than how fast a body
-/// moves, then no guess.
-MatchResult Mapper::localize(const ScanFeatures& scan, const PosePrior& predicted) const {
-  MatchResult best = matchScan(scan, *local_map_, predicted, params_.registration);
-  if (best.overlap >= params_.frontend.doubtful_overlap) return best;
-  // A wrong pose can agree with a good part of a map: the floor fits at many places.
-  MatchResult wide =
-      matchScan(scan, *local_map_, motion_.lastPose(scan.timestamp), params_.registration);
-  if (wide.overlap > best.overlap) best = std::move(wide);
-  if (best.overlap >= params_.frontend.doubtful_overlap) return best;
-  MatchResult global = relocalize(scan);
-  return global.overlap > best.overlap ? global : best;
-}
-
-MatchResult Mapper::relocalize(const ScanFeatures& scan) const {
-  const Keyframe& keyframe = map_.keyframes.back();
-  const GlobalAlignment alignment =
-      alignGlobally(keyframe.features, scan, params_.global_alignment);
-  if (alignment.outcome != AlignmentOutcome::kAligned) return {};
-  // A start without weight: the alignment saw the same scan, so its information must not count
-  // twice.
-  PosePrior start;
-  start.map_from_body = keyframe.map_from_body * alignment.target_from_source;
-  return matchScan(scan, *local_map_, start, params_.registration);
-}
-
-bool Mapper::wantsKeyframe(const MatchResult& match) const {
-  const Eigen::Isometry3d last_from_now =
-      map_.keyframes.back().map_from_body.inverse() * match.map_from_body;
-  return match.overlap < params_.frontend.keyframe_overlap ||
-         rotationAngle(last_from_now) > params_.frontend.keyframe_rotation;
 }
 
 void Mapper::addKeyframe(ScanFeatures scan, const MatchResult& match) {
@@ -103,7 +49,7 @@ void Mapper::addKeyframe(ScanFeatures scan, const MatchResult& match) {
   if (id > 0) optimize(first_free);
   if (mergeLandmarks(map_, params_.registration.plane_gate_sigmas) > 0 && id > 0)
     optimize(first_free);
-  rebuildLocalMap();
+  tracker_.setLocalMap(map_);
 }
 
 void Mapper::follow(double timestamp, std::size_t scan_index,
@@ -123,41 +69,6 @@ void Mapper::optimize(int first_free) {
   for (std::size_t k = 0; k < poses.size(); ++k) map_.keyframes[k].map_from_body = poses[k];
   for (std::size_t k = 0; k < planes.size(); ++k) map_.landmarks.planes[k].plane_in_map = planes[k];
   updateCorners(map_.landmarks);
-}
-
-std::vector<int> Mapper::localKeyframes() const {
-  const Eigen::Vector3d here = viewCentre(map_.keyframes.back());
-  std::vector<double> distance;
-  for (const Keyframe& keyframe : map_.keyframes)
-    distance.push_back((viewCentre(keyframe) - here).norm());
-  std::vector<int> ids(map_.keyframes.size());
-  std::iota(ids.begin(), ids.end(), 0);
-  std::stable_sort(ids.begin(), ids.end(), [&](int a, int b) {
-    return distance[static_cast<std::size_t>(a)] < distance[static_cast<std::size_t>(b)];
-  });
-  if (ids.size() > static_cast<std::size_t>(params_.frontend.local_keyframes)) {
-    ids.resize(static_cast<std::size_t>(params_.frontend.local_keyframes));
-  }
-  std::sort(ids.begin(), ids.end());
-  return ids;
-}
-
-void Mapper::rebuildLocalMap() {
-  const std::vector<int> ids = localKeyframes();
-  double spacing = 0.0;
-  for (const int id : ids) {
-    spacing = std::max(spacing,
-                       map_.keyframes[static_cast<std::size_t>(id)].features.cloud_in_body.spacing);
-  }
-  local_map_.emplace(spacing, params_.primitives.sensor, params_.registration);
-  for (const int id : ids) {
-    const Keyframe& keyframe = map_.keyframes[static_cast<std::size_t>(id)];
-    local_map_->insert(keyframe.features, keyframe.map_from_body, keyframe.landmark_of_plane);
-  }
-  std::vector<Plane> planes;
-  for (const PlaneLandmark& landmark : map_.landmarks.planes)
-    planes.push_back(landmark.plane_in_map);
-  local_map_->setLandmarks(std::move(planes));
 }
 
 void Mapper::finish() {

@@ -5,8 +5,7 @@
 #include "opp/mapping/core/map_state.h"
 #include "opp/mapping/core/mapper_params.h"
 #include "opp/mapping/core/trajectory.h"
-#include "opp/mapping/frontend/motion_model.h"
-#include "opp/mapping/registration/local_map.h"
+#include "opp/mapping/frontend/tracker.h"
 
 #include <map>
 #include <optional>
@@ -55,21 +54,15 @@ class Mapper {
   };
 
   FrameResult start(ScanFeatures scan, const std::optional<Eigen::Isometry3d>& odom_from_body);
-  MatchResult localize(const ScanFeatures& scan, const PosePrior& predicted) const;
-  MatchResult relocalize(const ScanFeatures& scan) const;
-  bool wantsKeyframe(const MatchResult& match) const;
   void addKeyframe(ScanFeatures scan, const MatchResult& match);
   void follow(double timestamp, std::size_t scan_index, const Eigen::Isometry3d& map_from_body);
   Eigen::Isometry3d poseOf(const Follower& follower) const;
   void optimize(int first_free);
-  void rebuildLocalMap();
-  std::vector<int> localKeyframes() const;
 
   MapperParams params_;
   Eigen::Isometry3d initial_pose_ = Eigen::Isometry3d::Identity();
   MapState map_;
-  MotionModel motion_;
-  std::optional<LocalMap> local_map_;
+  Tracker tracker_;
   std::vector<Follower> followers_;
 };
 

@@ -1,0 +1,145 @@
+// SPDX-FileCopyrightText: 2026 The opp-mapping authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "opp/mapping/frontend/tracker.h"
+
+#include "opp/mapping/core/se3.h"
+#include "opp/mapping/frontend/insert_keyframe.h"
+
+#include "support/random.h"
+#include "support/synthetic_features.h"
+
+#include <gtest/gtest.h>
+
+namespace opp::mapping {
+namespace {
+
+constexpr double kTimeStep = 0.1;
+
+Eigen::Isometry3d poseAt(double yaw, double x) {
+  Eigen::Isometry3d pose(Eigen::AngleAxisd(yaw, Eigen::Vector3d::UnitZ()));
+  pose.translation() = Eigen::Vector3d(x, 0.1, 1.2);
+  return pose;
+}
+
+ScanFeatures scanOf(std::uint64_t room, int step, const Eigen::Isometry3d& scene_from_body) {
+  test::SyntheticOptions options;
+  options.spacing = 0.08;
+  options.sigma = 0.003;
+  options.seed = static_cast<std::uint64_t>(step);
+  ScanFeatures scan =
+      test::trueFeatures(test::sampleScene(test::furnishedRoom(room), scene_from_body.translation(),
+                                           scene_from_body.inverse(), options));
+  scan.timestamp = kTimeStep * step;
+  return scan;
+}
+
+/// A map of one keyframe and a tracker that starts there.
+struct Started {
+  MapState map;
+  Tracker tracker{MapperParams()};
+};
+
+Started startAt(std::uint64_t room, const Eigen::Isometry3d& pose) {
+  Started started;
+  MatchResult match;
+  match.map_from_body = pose;
+  insertKeyframe(scanOf(room, 0, pose), match, SensorModel(), started.map);
+  started.tracker.start({0.0, pose}, std::nullopt);
+  started.tracker.setLocalMap(started.map);
+  return started;
+}
+
+TEST(Tracker, WithoutAMapNothingIsLocalized) {
+  Tracker tracker{MapperParams()};
+  const TrackResult result = tracker.track(scanOf(1, 0, poseAt(0.0, 0.0)), std::nullopt, {});
+  EXPECT_EQ(result.outcome, TrackOutcome::kNoMap);
+  EXPECT_FALSE(result.localized());
+  EXPECT_FALSE(result.wants_keyframe);
+}
+
+TEST(Tracker, SaysThatAScanIsEmpty) {
+  Started started = startAt(1, poseAt(0.0, 0.0));
+  EXPECT_EQ(started.tracker.track({}, std::nullopt, started.map).outcome, TrackOutcome::kEmptyScan);
+}
+
+TEST(Tracker, LocalizesTheNextScanInManyRooms) {
+  for (std::uint64_t room = 0; room < 50; ++room) {
+    Started started = startAt(room, poseAt(0.0, 0.0));
+    const Eigen::Isometry3d truth = poseAt(0.05, 0.06);
+    const TrackResult result =
+        started.tracker.track(scanOf(room, 1, truth), std::nullopt, started.map);
+    ASSERT_TRUE(result.localized()) << "room " << room;
+    EXPECT_FALSE(result.wants_keyframe) << "room " << room;
+    const Vector6d error = difference(truth, result.match.map_from_body);
+    // As in MatchScan: 4·3 mm·√2/√250 = 1.1 mm in each of three directions, rounded up.
+    EXPECT_LT(error.head<3>().norm(), 2e-3) << "room " << room;
+    EXPECT_LT(error.tail<3>().norm(), 2e-3) << "room " << room;
+  }
+}
+
+TEST(Tracker, WantsAKeyframeOnceTheBodyLooksElsewhere) {
+  Started started = startAt(2, poseAt(0.0, 0.0));
+  bool wanted = false;
+  for (int step = 1; step <= 4; ++step) {
+    const TrackResult result =
+        started.tracker.track(scanOf(2, step, poseAt(0.12 * step, 0.0)), std::nullopt, started.map);
+    ASSERT_TRUE(result.localized());
+    // keyframe_rotation is 25° = 0.436 rad: passed at the fourth step.
+    EXPECT_EQ(result.wants_keyframe, step == 4);
+    wanted = wanted || result.wants_keyframe;
+  }
+  EXPECT_TRUE(wanted);
+}
+
+TEST(Tracker, AScanOfAnotherPlaceIsLostAndHarmless) {
+  Started started = startAt(3, poseAt(0.0, 0.0));
+  // One small sphere of outward normals agrees with no room.
+  ScanFeatures elsewhere = scanOf(3, 1, poseAt(0.0, 0.0));
+  test::Random random(1);
+  for (std::size_t i = 0; i < elsewhere.cloud_in_body.size(); ++i) {
+    elsewhere.cloud_in_body.normals[i] = random.unitVector().cast<float>();
+    elsewhere.cloud_in_body.points[i] = 0.3F * elsewhere.cloud_in_body.normals[i];
+    elsewhere.primitives_in_body.labels[i] = -1;
+  }
+  Primitives none;
+  none.labels = elsewhere.primitives_in_body.labels;
+  elsewhere.primitives_in_body = none;
+  EXPECT_EQ(started.tracker.track(elsewhere, std::nullopt, started.map).outcome,
+            TrackOutcome::kLittleOverlap);
+  EXPECT_TRUE(started.tracker.track(scanOf(3, 2, poseAt(0.05, 0.0)), std::nullopt, started.map)
+                  .localized());
+}
+
+TEST(Tracker, FollowsAMapThatMoved) {
+  Started started = startAt(4, poseAt(0.0, 0.0));
+  Eigen::Isometry3d new_from_old(Eigen::AngleAxisd(1.0, Eigen::Vector3d::UnitZ()));
+  new_from_old.translation() = Eigen::Vector3d(5.0, -3.0, 0.5);
+  Keyframe& keyframe = started.map.keyframes.front();
+  keyframe.map_from_body = new_from_old * keyframe.map_from_body;
+  for (PlaneLandmark& landmark : started.map.landmarks.planes)
+    landmark.plane_in_map = transformed(new_from_old, landmark.plane_in_map);
+  started.tracker.setLocalMap(started.map);
+  started.tracker.correct(keyframe.map_from_body);
+  const Eigen::Isometry3d truth = poseAt(0.05, 0.06);
+  const TrackResult result = started.tracker.track(scanOf(4, 1, truth), std::nullopt, started.map);
+  ASSERT_TRUE(result.localized());
+  const Vector6d error = difference(new_from_old * truth, result.match.map_from_body);
+  EXPECT_LT(error.head<3>().norm(), 2e-3);
+  EXPECT_LT(error.tail<3>().norm(), 2e-3);
+}
+
+TEST(LocalKeyframes, AreTheNearestOfTheNewestInOrder) {
+  EXPECT_TRUE(localKeyframes({}, 3).empty());
+  std::vector<Keyframe> keyframes(5);
+  const double x[] = {0.2, 9.0, 1.0, 5.0, 0.0};
+  for (std::size_t k = 0; k < keyframes.size(); ++k) {
+    keyframes[k].features.cloud_in_body.points = {Eigen::Vector3f::UnitZ()};
+    keyframes[k].features.cloud_in_body.normals = {Eigen::Vector3f::UnitZ()};
+    keyframes[k].map_from_body.translation().x() = x[k];
+  }
+  EXPECT_EQ(localKeyframes(keyframes, 3), (std::vector<int>{0, 2, 4}));
+  EXPECT_EQ(localKeyframes(keyframes, 9), (std::vector<int>{0, 1, 2, 3, 4}));
+}
+
+}  // namespace
+}  // namespace opp::mapping
