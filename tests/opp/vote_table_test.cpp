@@ -8,7 +8,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdlib>
+#include <vector>
 
 namespace opp {
 namespace {
@@ -18,7 +22,8 @@ TEST(VoteTable, PeakIsTheMeanOfItsVotes) {
   table.cast(0.50F, 0.30F, 7);
   table.cast(0.54F, 0.32F, 8);
   table.cast(2.00F, -0.60F, 9);
-  const VotePeak peak = table.takePeak();
+  VotePeak peak;
+  ASSERT_TRUE(table.takePeak(2, peak));
   EXPECT_NEAR(peak.theta, 0.52, 1e-6);
   EXPECT_NEAR(peak.rho, 0.31, 1e-6);
   EXPECT_EQ(peak.voters, (std::vector<std::uint32_t>{7, 8}));
@@ -29,9 +34,51 @@ TEST(VoteTable, GivesAllPeaksOnceAndThenNothing) {
   VoteTable table(18, 25, 1.0);
   for (std::uint32_t k = 0; k < 5; ++k) table.cast(0.5F, 0.3F, k);
   for (std::uint32_t k = 5; k < 8; ++k) table.cast(2.0F, -0.6F, k);
-  EXPECT_EQ(table.takePeak().voters.size(), 5U);
-  EXPECT_EQ(table.takePeak().voters.size(), 3U);
-  EXPECT_TRUE(table.takePeak().voters.empty());
+  VotePeak peak;
+  ASSERT_TRUE(table.takePeak(1, peak));
+  EXPECT_EQ(peak.voters.size(), 5U);
+  ASSERT_TRUE(table.takePeak(1, peak));
+  EXPECT_EQ(peak.voters.size(), 3U);
+  EXPECT_FALSE(table.takePeak(1, peak));
+}
+
+TEST(VoteTable, LeavesPeaksBelowTheThresholdInPlace) {
+  VoteTable table(18, 25, 1.0);
+  for (std::uint32_t k = 0; k < 5; ++k) table.cast(0.5F, 0.3F, k);
+  VotePeak peak;
+  EXPECT_FALSE(table.takePeak(6, peak));
+  EXPECT_EQ(table.votes(), 5U);
+  EXPECT_TRUE(table.takePeak(5, peak));
+}
+
+// Random votes, compared with counting the neighbours of every vote; also across the fold.
+TEST(VoteTable, PeakIsTheWindowWithMostVotes) {
+  constexpr int kThetaBins = 7, kRhoBins = 9;
+  for (std::uint64_t seed = 0; seed < 50; ++seed) {
+    test::Random random(seed);
+    VoteTable table(kThetaBins, kRhoBins, 1.0);
+    std::vector<std::array<int, 2>> bins;
+    for (std::uint32_t k = 0; k < 60; ++k) {
+      bins.push_back({random.integer(0, kThetaBins - 1), random.integer(0, kRhoBins - 1)});
+      table.cast(static_cast<float>((bins[k][0] + 0.5) * kPi / kThetaBins),
+                 static_cast<float>((bins[k][1] + 0.5) * 2.0 / kRhoBins - 1.0), k);
+    }
+    std::size_t most = 0;
+    for (const auto& center : bins) {
+      std::size_t count = 0;
+      for (const auto& bin : bins) {
+        const int steps = std::abs(bin[0] - center[0]);
+        const bool folded = steps == kThetaBins - 1;
+        const int rho = folded ? kRhoBins - 1 - bin[1] : bin[1];
+        count += (steps <= 1 || folded) && std::abs(rho - center[1]) <= 1 ? 1U : 0U;
+      }
+      most = std::max(most, count);
+    }
+    VotePeak peak;
+    ASSERT_TRUE(table.takePeak(1, peak));
+    EXPECT_EQ(peak.voters.size(), most);
+    EXPECT_EQ(table.votes(), bins.size() - most);
+  }
 }
 
 TEST(VoteTable, OppositeNormalsVoteForTheSamePlane) {
@@ -42,8 +89,8 @@ TEST(VoteTable, OppositeNormalsVoteForTheSamePlane) {
     table.clear();
     table.cast(static_cast<float>(theta), static_cast<float>(rho), 0);
     table.cast(static_cast<float>(theta + kPi), static_cast<float>(-rho), 1);
-    const VotePeak peak = table.takePeak();
-    ASSERT_EQ(peak.voters.size(), 2U) << theta << " " << rho;
+    VotePeak peak;
+    ASSERT_TRUE(table.takePeak(2, peak)) << theta << " " << rho;
     // The same line in the reference plane: same normal up to sign, same signed offset.
     const double sign = std::cos(peak.theta - theta) > 0.0 ? 1.0 : -1.0;
     EXPECT_NEAR(std::cos(peak.theta), sign * std::cos(theta), 1e-5);
@@ -65,7 +112,8 @@ TEST(VoteTable, DecodedPeaksAreUnbiased) {
       table.cast(static_cast<float>(theta + random.normal(degToRad(3.0))),
                  static_cast<float>(rho + random.normal(0.02)), k);
     }
-    const VotePeak peak = table.takePeak();
+    VotePeak peak;
+    ASSERT_TRUE(table.takePeak(1, peak));
     const bool same = std::cos(peak.theta - theta) > 0.0;
     theta_error += std::remainder(peak.theta - theta, kPi);
     rho_error += same ? peak.rho - rho : -peak.rho - rho;
@@ -82,13 +130,23 @@ TEST(VoteTable, PeakOnABinEdgeIsNotSplit) {
   for (std::uint32_t k = 0; k < 10; ++k) {
     table.cast(edge + (k % 2 == 0 ? 0.01F : -0.01F), k < 5 ? 0.119F : 0.121F, k);
   }
-  EXPECT_EQ(table.takePeak().voters.size(), 10U);
+  VotePeak peak;
+  ASSERT_TRUE(table.takePeak(1, peak));
+  EXPECT_EQ(peak.voters.size(), 10U);
 }
 
 TEST(SignificantVotes, GrowsWithClutterAndIsNeverBelowThree) {
   EXPECT_EQ(significantVotes(0.0, 450.0, 1e-3), 3);
   EXPECT_GT(significantVotes(1.0, 450.0, 1e-3), significantVotes(0.1, 450.0, 1e-3));
   EXPECT_GT(significantVotes(1.0, 450.0, 1e-6), significantVotes(1.0, 450.0, 1e-3));
+}
+
+TEST(SignificantVotes, AKnownLowerBoundChangesNothing) {
+  for (double mean = 0.0; mean < 20.0; mean += 0.1) {
+    const int least = significantVotes(mean, 450.0, 1e-3);
+    EXPECT_EQ(significantVotes(mean + 0.1, 450.0, 1e-3, least),
+              significantVotes(mean + 0.1, 450.0, 1e-3));
+  }
 }
 
 TEST(SignificantVotes, AccidentalVotesRarelyReachIt) {

@@ -5,44 +5,77 @@
 #include "opp/parallel/parallel_for.h"
 
 #include "detection/fit_voters.h"
-#include "detection/gather_hypotheses.h"
+#include "detection/local_votes.h"
+#include "detection/open_samples.h"
 #include "detection/voting_scene.h"
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <optional>
 
 namespace opp {
 namespace {
 
-/// All hypotheses of one reference point.
-void detectAt(const VotingScene& scene, std::uint32_t r, LocalVotes& votes, OppHypotheses& found) {
-  castVotes(scene, r, votes);
-  const int min_coplanar = scene.thresholds.coplanar[votes.pairs];
-  if (static_cast<int>(votes.coplanar.size()) < min_coplanar) return;
-  const VotingSample& sample = scene.samples[r];
-  const Eigen::Vector3d x = sample.point.cast<double>(), n = sample.normal.cast<double>();
-  const auto reference =
-      fitVoters(scene, votes.coplanar, x, meanNormal(scene, votes.coplanar, n), min_coplanar);
-  if (!reference) return;
-  const int index = static_cast<int>(found.planes.size());
-  found.planes.push_back(*reference);
-  const Eigen::Matrix<double, 3, 2> tangents = tangentBasis(n);
-  for (;;) {
-    const int min_votes = scene.thresholds.orthogonal[votes.orthogonal.votes()];
-    const VotePeak peak = votes.orthogonal.takePeak();
-    if (static_cast<int>(peak.voters.size()) < min_votes) return;
-    const Eigen::Vector3d direction =
-        tangents * Eigen::Vector2d(std::cos(peak.theta), std::sin(peak.theta));
-    const Eigen::Vector3d normal = meanNormal(scene, peak.voters, direction);
-    const auto partner =
-        fitVoters(scene, peak.voters, densestHeight(scene, peak.voters, normal), normal, min_votes);
-    if (!partner) continue;
-    found.pairs.push_back({index, static_cast<int>(found.planes.size()), partner->votes});
-    found.planes.push_back(*partner);
+/// All hypotheses of one reference point after another.
+class Detector {
+ public:
+  Detector(const VotingScene& scene, const VoteThresholds& thresholds)
+      : scene_(scene),
+        thresholds_(thresholds),
+        votes_(scene),
+        voters_(scene.params.partners),
+        fitter_(scene.params.partners) {}
+
+  void detectAt(std::uint32_t r, OppHypotheses& found) {
+    votes_.pairUp(r);
+    const int min_coplanar = thresholds_.coplanar[votes_.pairs];
+    if (votes_.coplanar.size < min_coplanar) return;
+    const VotingSample& sample = scene_.samples[r];
+    const Eigen::Vector3d n = sample.normal.cast<double>();
+    const auto reference = fitter_.fit(votes_.coplanar, Eigen::Vector3d::Zero(),
+                                       meanNormal(votes_.coplanar, n), min_coplanar);
+    if (!reference) return;
+    const int index = add(*reference, sample, found);
+    const Eigen::Matrix<double, 3, 2> tangents = tangentBasis(n);
+    votes_.castOrthogonal(tangents.cast<float>());
+    for (;;) {
+      const int min_votes = thresholds_.orthogonal[votes_.table.votes()];
+      if (!votes_.table.takePeak(min_votes, peak_)) return;
+      const auto partner = fitPeak(tangents, min_votes);
+      if (!partner) continue;
+      const int partner_index = add(*partner, sample, found);
+      found.pairs.push_back({index, partner_index, static_cast<double>(partner->votes)});
+    }
   }
-}
+
+ private:
+  std::optional<VotersFit> fitPeak(const Eigen::Matrix<double, 3, 2>& tangents, int min_votes) {
+    voters_.size = 0;
+    for (const std::uint32_t k : peak_.voters) {
+      voters_.add(votes_.partners, static_cast<Eigen::Index>(k));
+    }
+    const Eigen::Vector3d direction =
+        tangents * Eigen::Vector2d(std::cos(peak_.theta), std::sin(peak_.theta));
+    const Eigen::Vector3d normal = meanNormal(voters_, direction);
+    return fitter_.fit(voters_, densestHeight(voters_, normal) * normal, normal, min_votes);
+  }
+
+  /// Appends the plane in the cloud's frame; returns its index.
+  int add(const VotersFit& fit, const VotingSample& sample, OppHypotheses& found) const {
+    const Eigen::Vector3d anchor = sample.point.cast<double>() + fit.mean;
+    Plane plane = Plane::fromPointNormal(anchor, fit.plane.normal());
+    if (plane.signedDistance(scene_.viewpoint) < 0.0) plane = plane.flipped();
+    found.planes.push_back({plane, anchor, static_cast<double>(fit.votes)});
+    return static_cast<int>(found.planes.size()) - 1;
+  }
+
+  const VotingScene& scene_;
+  const VoteThresholds& thresholds_;
+  LocalVotes votes_;
+  VotePeak peak_;
+  Partners voters_;
+  VoterFitter fitter_;
+};
 
 void append(const OppHypotheses& part, OppHypotheses& all) {
   const int offset = static_cast<int>(all.planes.size());
@@ -52,55 +85,36 @@ void append(const OppHypotheses& part, OppHypotheses& all) {
   }
 }
 
-/// Appends the hypotheses of the given reference points.
-void detectAtAll(const VotingScene& scene, const Voters& references, int threads,
-                 OppHypotheses& all) {
-  constexpr std::size_t kBlock = 32;  // reference points per task; results do not depend on it
+/// The hypotheses of the given reference points.
+OppHypotheses detectAtAll(const VotingScene& scene, const VoteThresholds& thresholds,
+                          const std::vector<std::uint32_t>& references, int threads) {
+  constexpr std::size_t kBlock = 16;  // reference points per task; results do not depend on it
   std::vector<OppHypotheses> parts((references.size() + kBlock - 1) / kBlock);
   parallelFor(parts.size(), threads, [&](std::size_t block) {
-    LocalVotes votes(scene.params, scene.radius);
+    Detector detector(scene, thresholds);
     const std::size_t end = std::min(references.size(), (block + 1) * kBlock);
     for (std::size_t k = block * kBlock; k < end; ++k) {
-      detectAt(scene, references[k], votes, parts[block]);
+      detector.detectAt(references[k], parts[block]);
     }
   });
+  OppHypotheses all;
   for (const OppHypotheses& part : parts) append(part, all);
+  return all;
 }
 
-/// At most `count` of the candidates, at equal steps. The grid's order runs cell by cell: equal
-/// steps through it are even in space.
-Voters evenly(const Voters& candidates, int count) {
-  const std::size_t wanted = std::min(candidates.size(), static_cast<std::size_t>(count));
-  Voters chosen;
-  for (std::size_t k = 0; k < wanted; ++k) {
-    chosen.push_back(candidates[(2 * k + 1) * candidates.size() / (2 * wanted)]);
+/// Rounds of at most `budget` reference points in all, each spread over the samples that the planes
+/// of the rounds before left open. With `stop_early` a round that closes none is the last.
+void detectInRounds(const VotingScene& scene, const VoteThresholds& thresholds, int budget,
+                    bool stop_early, int threads, OpenSamples& open, OppHypotheses& found) {
+  std::vector<std::uint8_t> taken(scene.samples.size(), 0);
+  const int round_size = scene.params.round_size;
+  for (int left = budget; left > 0; left -= round_size) {
+    const auto references = open.take(scene.grid.order(), std::min(left, round_size), taken);
+    if (references.empty()) return;
+    const OppHypotheses round = detectAtAll(scene, thresholds, references, threads);
+    append(round, found);
+    if (open.close(round.planes) == 0 && stop_early) return;
   }
-  return chosen;
-}
-
-/// Samples that lie on none of the planes found so far.
-Voters unexplained(const VotingScene& scene, const OppHypotheses& found, double reach) {
-  const double angle = scene.params.normal_tolerance;
-  struct Candidate {
-    Eigen::Vector3f normal;
-    float d;
-  };
-  std::vector<Candidate> planes;
-  for (const std::size_t leader : gatherHypotheses(found.planes, reach, angle).leaders) {
-    const Plane& plane = found.planes[leader].plane;
-    planes.push_back({plane.normal().cast<float>(), static_cast<float>(plane.d())});
-  }
-  const auto cosine = static_cast<float>(std::cos(angle));
-  Voters left;
-  for (std::uint32_t i = 0; i < scene.samples.size(); ++i) {
-    const VotingSample& sample = scene.samples[i];
-    const bool explained = std::any_of(planes.begin(), planes.end(), [&](const Candidate& plane) {
-      return std::abs(plane.normal.dot(sample.point) + plane.d) < sample.gate &&
-             std::abs(plane.normal.dot(sample.normal)) > cosine;
-    });
-    if (!explained) left.push_back(i);
-  }
-  return left;
 }
 
 }  // namespace
@@ -110,16 +124,17 @@ OppHypotheses detectOpps(const OrientedCloud& cloud, const SensorModel& sensor,
   validate(params);
   if (cloud.size() < 3 || !(cloud.spacing > 0.0)) return {};
   OppHypotheses found;
+  const VoteThresholds thresholds(params);
+  const std::vector<VotingSample> samples = votingSamples(cloud, sensor, params);
   const double radius = params.neighbourhood * cloud.spacing;
-  const VotingScene wide = makeVotingScene(cloud, sensor, params, radius);
-  Voters all(cloud.size());
-  std::iota(all.begin(), all.end(), 0U);
-  detectAtAll(wide, evenly(all, params.reference_points), threads, found);
+  OpenSamples open(samples, 0.5 * cloud.spacing, params.normal_tolerance);
+  detectInRounds(VotingScene(cloud, samples, params, radius), thresholds, params.reference_points,
+                 true, threads, open, found);
+  if (open.empty()) return found;
   // Planes that fill little of the wide neighbourhood get few of its votes: what is left over votes
   // again among its nearest.
-  const VotingScene narrow = makeVotingScene(cloud, sensor, params, radius / params.narrowing);
-  const Voters left = unexplained(narrow, found, 0.5 * cloud.spacing);
-  detectAtAll(narrow, evenly(left, params.narrow_reference_points), threads, found);
+  detectInRounds(VotingScene(cloud, samples, params, radius / params.narrowing), thresholds,
+                 params.narrow_reference_points, false, threads, open, found);
   return found;
 }
 

@@ -5,56 +5,101 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
-#include <random>
 #include <utility>
 
 namespace opp {
 namespace {
 
-/// Fisher–Yates; std::shuffle may differ between standard libraries.
-void shuffle(std::vector<std::uint32_t>& values, std::uint64_t seed) {
-  std::mt19937_64 engine(seed);
-  for (std::size_t i = values.size(); i > 1; --i) {
-    std::swap(values[i - 1], values[engine() % i]);
+/// Random numbers of Steele et al., "Fast splittable pseudorandom number generators", 2014: one is
+/// drawn per point, and they need to be different rather than good.
+class SplitMix {
+ public:
+  explicit SplitMix(std::uint64_t seed) : state_(seed) {}
+  /// In [0, bound).
+  std::uint32_t below(std::uint32_t bound) {
+    state_ += 0x9E3779B97F4A7C15ULL;
+    std::uint64_t z = state_;
+    z = (z ^ (z >> 30)) * 0xBF58476D1CE4E5B9ULL;
+    z = (z ^ (z >> 27)) * 0x94D049BB133111EBULL;
+    return static_cast<std::uint32_t>(((z >> 32) * bound) >> 32);
   }
+
+ private:
+  std::uint64_t state_;
+};
+
+/// Fisher–Yates; std::shuffle may differ between standard libraries.
+std::vector<std::uint32_t> shuffledIndices(std::size_t count, std::uint64_t seed) {
+  std::vector<std::uint32_t> indices(count);
+  std::iota(indices.begin(), indices.end(), 0U);
+  SplitMix random(seed);
+  for (std::size_t i = count; i > 1; --i) {
+    std::swap(indices[i - 1], indices[random.below(static_cast<std::uint32_t>(i))]);
+  }
+  return indices;
+}
+
+/// floor; without SSE 4.1 std::floor is a call.
+std::int64_t floorOf(double x) {
+  const auto truncated = static_cast<std::int64_t>(x);
+  return truncated - (static_cast<double>(truncated) > x ? 1 : 0);
+}
+
+/// Stands for the cell (i, j, k); linear, so that a step along an axis adds a constant. Cells with
+/// equal keys count as one. Among 10⁵ cells that happens with a probability of 10⁻⁹, and a ball
+/// then gets points that lie outside of it.
+constexpr std::array<std::uint64_t, 3> kKeySteps = {0x9E3779B97F4A7C15ULL, 0xC2B2AE3D27D4EB4FULL,
+                                                    0x165667B19E3779F9ULL};
+template <typename Index>
+std::uint64_t keyOf(const Index& index) {
+  std::uint64_t key = 0;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    key += static_cast<std::uint64_t>(index[axis]) * kKeySteps[axis];
+  }
+  return key;
 }
 
 }  // namespace
 
-NeighbourhoodGrid::Key NeighbourhoodGrid::keyOf(const Eigen::Vector3f& x) const {
+NeighbourhoodGrid::Index NeighbourhoodGrid::indexOf(const Eigen::Vector3f& x) const {
   // Far more cells than float32 coordinates can tell apart; keeps the conversion defined.
   static constexpr double kLargestIndex = 1e15;
   const auto index = [this](float value) {
-    const double cells = std::floor(static_cast<double>(value) / cell_);
-    return static_cast<std::int64_t>(std::min(std::max(cells, -kLargestIndex), kLargestIndex));
+    const double cells = static_cast<double>(value) * cells_per_metre_;
+    return floorOf(std::min(std::max(cells, -kLargestIndex), kLargestIndex));
   };
   return {index(x.x()), index(x.y()), index(x.z())};
 }
 
-std::size_t NeighbourhoodGrid::slotOf(const Key& key) const {
-  // Three large odd constants spread neighbouring cells over the table (multiplicative hashing).
-  const std::uint64_t hash = static_cast<std::uint64_t>(key[0]) * 0x9E3779B97F4A7C15ULL ^
-                             static_cast<std::uint64_t>(key[1]) * 0xC2B2AE3D27D4EB4FULL ^
-                             static_cast<std::uint64_t>(key[2]) * 0x165667B19E3779F9ULL;
-  std::size_t slot = (hash ^ (hash >> 29)) & (slots_.size() - 1);
-  while (slots_[slot].cell >= 0 && slots_[slot].key != key) slot = (slot + 1) & (slots_.size() - 1);
+std::size_t NeighbourhoodGrid::slotOf(std::uint64_t key) const {
+  const std::size_t mask = slots_.size() - 1;
+  std::size_t slot = (key ^ (key >> 29)) & mask;
+  while (slots_[slot].cell >= 0 && slots_[slot].key != key) slot = (slot + 1) & mask;
   return slot;
+}
+
+std::int32_t NeighbourhoodGrid::cellAt(std::uint64_t key) {
+  const std::size_t slot = slotOf(key);
+  if (slots_[slot].cell >= 0) return slots_[slot].cell;
+  const auto cell = static_cast<std::int32_t>(cells_.size());
+  slots_[slot] = {key, cell};
+  cells_.emplace_back();
+  if (2 * cells_.size() > slots_.size()) {
+    std::vector<Slot> old(2 * slots_.size());
+    old.swap(slots_);
+    for (const Slot& kept : old) {
+      if (kept.cell >= 0) slots_[slotOf(kept.key)] = kept;
+    }
+  }
+  return cell;
 }
 
 NeighbourhoodGrid::NeighbourhoodGrid(const std::vector<Eigen::Vector3f>& points, double cell,
                                      std::uint64_t seed)
-    : cell_(cell) {
-  std::size_t capacity = 16;
-  while (capacity < 2 * points.size()) capacity *= 2;
-  slots_.resize(capacity);
+    : cell_(cell), cells_per_metre_(1.0 / cell), slots_(64) {
   std::vector<std::uint32_t> cell_of(points.size());
   for (std::size_t i = 0; i < points.size(); ++i) {
-    Slot& slot = slots_[slotOf(keyOf(points[i]))];
-    if (slot.cell < 0) {
-      slot = {keyOf(points[i]), static_cast<std::int32_t>(cells_.size())};
-      cells_.emplace_back();
-    }
-    cell_of[i] = static_cast<std::uint32_t>(slot.cell);
+    cell_of[i] = static_cast<std::uint32_t>(cellAt(keyOf(indexOf(points[i]))));
     ++cells_[cell_of[i]].end;
   }
   std::uint32_t begin = 0;
@@ -63,17 +108,16 @@ NeighbourhoodGrid::NeighbourhoodGrid(const std::vector<Eigen::Vector3f>& points,
     range = {begin, begin};
     begin += size;
   }
-  std::vector<std::uint32_t> shuffled(points.size());
-  std::iota(shuffled.begin(), shuffled.end(), 0U);
-  shuffle(shuffled, seed);
   order_.resize(points.size());
-  for (const std::uint32_t i : shuffled) order_[cells_[cell_of[i]].end++] = i;
+  for (const std::uint32_t i : shuffledIndices(points.size(), seed)) {
+    order_[cells_[cell_of[i]].end++] = i;
+  }
 }
 
 void NeighbourhoodGrid::cellsNear(const Eigen::Vector3f& center, double radius,
                                   std::vector<Range>& cells) const {
-  const Key low = keyOf(center.array() - static_cast<float>(radius));
-  const Key high = keyOf(center.array() + static_cast<float>(radius));
+  const Index low = indexOf(center.array() - static_cast<float>(radius));
+  const Index high = indexOf(center.array() + static_cast<float>(radius));
   // Squared distance from the center to the cell's slab along one axis.
   const auto gap = [&](int axis, std::int64_t index) {
     const double near = cell_ * static_cast<double>(index), x = static_cast<double>(center[axis]);
@@ -84,10 +128,11 @@ void NeighbourhoodGrid::cellsNear(const Eigen::Vector3f& center, double radius,
     for (std::int64_t j = low[1]; j <= high[1]; ++j) {
       const double gap_ij = gap(0, i) + gap(1, j);
       if (gap_ij > radius * radius) continue;
-      for (std::int64_t k = low[2]; k <= high[2]; ++k) {
-        if (gap_ij + gap(2, k) > radius * radius) continue;
-        const Slot& slot = slots_[slotOf({i, j, k})];
-        if (slot.cell >= 0) cells.push_back(cells_[static_cast<std::size_t>(slot.cell)]);
+      std::uint64_t key = keyOf(Index{i, j, low[2]});
+      for (std::int64_t k = low[2]; k <= high[2]; ++k, key += kKeySteps[2]) {
+        const Slot& slot = slots_[slotOf(key)];
+        if (slot.cell < 0 || gap_ij + gap(2, k) > radius * radius) continue;
+        cells.push_back(cells_[static_cast<std::size_t>(slot.cell)]);
       }
     }
   }

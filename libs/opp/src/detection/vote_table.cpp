@@ -13,8 +13,9 @@ VoteTable::VoteTable(int theta_bins, int rho_bins, double radius)
     : theta_bins_(theta_bins),
       rho_bins_(rho_bins),
       radius_(static_cast<float>(radius)),
-      counts_(static_cast<std::size_t>(theta_bins + 2) * static_cast<std::size_t>(rho_bins + 2),
-              0) {}
+      theta_scale_(static_cast<float>(theta_bins / kPi)),
+      rho_scale_(static_cast<float>(0.5 * rho_bins / radius)),
+      windows_(static_cast<std::size_t>(theta_bins) * static_cast<std::size_t>(rho_bins + 2), 0) {}
 
 void VoteTable::cast(float theta, float rho, std::uint32_t voter) {
   constexpr float kPiF = static_cast<float>(kPi);
@@ -22,28 +23,34 @@ void VoteTable::cast(float theta, float rho, std::uint32_t voter) {
     theta += theta < 0.0F ? kPiF : -kPiF;
     rho = -rho;
   }
-  const auto bin = [](float value, float range, int bins) {
-    return std::clamp(static_cast<int>(value / range * static_cast<float>(bins)), 0, bins - 1);
-  };
-  const Vote vote{theta, rho, bin(theta, kPiF, theta_bins_),
-                  bin(rho + radius_, 2.0F * radius_, rho_bins_), voter};
+  const Vote vote{
+      theta, rho, std::clamp(static_cast<int>(theta * theta_scale_), 0, theta_bins_ - 1),
+      std::clamp(static_cast<int>((rho + radius_) * rho_scale_), 0, rho_bins_ - 1), voter};
   count(vote, 1);
   votes_.push_back(vote);
 }
 
-void VoteTable::count(const Vote& vote, std::int32_t change) {
-  counts_[index(vote.theta_bin, vote.rho_bin)] += change;
-  // The rows beside the fold once more on its other side, mirrored.
-  const int mirrored = rho_bins_ - 1 - vote.rho_bin;
-  if (vote.theta_bin == 0) counts_[index(theta_bins_, mirrored)] += change;
-  if (vote.theta_bin == theta_bins_ - 1) counts_[index(-1, mirrored)] += change;
+void VoteTable::addToRow(int theta_bin, int rho_bin, std::int32_t change) {
+  std::int32_t* bins = &windows_[index(theta_bin, rho_bin - 1)];
+  bins[0] += change;
+  bins[1] += change;
+  bins[2] += change;
 }
 
-int VoteTable::windowVotes(int theta_bin, int rho_bin) const {
-  const std::int32_t* row = &counts_[index(theta_bin - 1, rho_bin - 1)];
-  int sum = 0;
-  for (int k = 0; k < 3; ++k, row += rho_bins_ + 2) sum += row[0] + row[1] + row[2];
-  return sum;
+void VoteTable::count(const Vote& vote, std::int32_t change) {
+  // Beyond the fold ρ is mirrored.
+  const int mirrored = rho_bins_ - 1 - vote.rho_bin, last = theta_bins_ - 1;
+  addToRow(vote.theta_bin, vote.rho_bin, change);
+  if (vote.theta_bin > 0) {
+    addToRow(vote.theta_bin - 1, vote.rho_bin, change);
+  } else {
+    addToRow(last, mirrored, change);
+  }
+  if (vote.theta_bin < last) {
+    addToRow(vote.theta_bin + 1, vote.rho_bin, change);
+  } else {
+    addToRow(0, mirrored, change);
+  }
 }
 
 bool VoteTable::inWindow(const Vote& vote, Bin center, double& theta, double& rho) const {
@@ -61,16 +68,18 @@ bool VoteTable::inWindow(const Vote& vote, Bin center, double& theta, double& rh
   return std::abs(bin.theta - center.theta) <= 1 && std::abs(bin.rho - center.rho) <= 1;
 }
 
-VotePeak VoteTable::takePeak() {
-  VotePeak peak;
+bool VoteTable::takePeak(int min_votes, VotePeak& peak) {
+  peak.theta = peak.rho = 0.0;
+  peak.voters.clear();
   Bin center{0, 0};
   int best = 0;
   for (const Vote& vote : votes_) {
-    const int sum = windowVotes(vote.theta_bin, vote.rho_bin);
+    const int sum = windows_[index(vote.theta_bin, vote.rho_bin)];
     if (sum <= best) continue;
     best = sum;
     center = {vote.theta_bin, vote.rho_bin};
   }
+  if (best < min_votes) return false;
   std::size_t kept = 0;
   for (const Vote& vote : votes_) {
     double theta = 0.0, rho = 0.0;
@@ -84,10 +93,9 @@ VotePeak VoteTable::takePeak() {
     count(vote, -1);
   }
   votes_.resize(kept);
-  if (peak.voters.empty()) return peak;
   peak.theta /= static_cast<double>(peak.voters.size());
   peak.rho /= static_cast<double>(peak.voters.size());
-  return peak;
+  return true;
 }
 
 void VoteTable::clear() {
@@ -95,10 +103,10 @@ void VoteTable::clear() {
   votes_.clear();
 }
 
-int significantVotes(double mean, double windows, double false_alarms) {
+int significantVotes(double mean, double windows, double false_alarms, int least) {
   // P(X ≥ t) ≤ e^−mean (e mean / t)^t for t > mean.
   const double needed = std::log(windows / false_alarms);
-  int votes = std::max(3, static_cast<int>(std::ceil(mean)));
+  int votes = std::max({3, least, static_cast<int>(std::ceil(mean))});
   while (mean > 0.0 && votes * std::log(votes / mean) - (votes - mean) < needed) ++votes;
   return votes;
 }

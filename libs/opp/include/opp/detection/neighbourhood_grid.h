@@ -30,15 +30,17 @@ class NeighbourhoodGrid {
   void cellsNear(const Eigen::Vector3f& center, double radius, std::vector<Range>& cells) const;
 
  private:
-  using Key = std::array<std::int64_t, 3>;
+  using Index = std::array<std::int64_t, 3>;
   struct Slot {
-    Key key{};
+    std::uint64_t key = 0;
     std::int32_t cell = -1;
   };
-  Key keyOf(const Eigen::Vector3f& x) const;
-  std::size_t slotOf(const Key& key) const;
+  Index indexOf(const Eigen::Vector3f& x) const;
+  std::size_t slotOf(std::uint64_t key) const;
+  /// Number of the cell, which is made if it is not there yet.
+  std::int32_t cellAt(std::uint64_t key);
 
-  double cell_ = 1.0;
+  double cell_, cells_per_metre_;
   std::vector<Slot> slots_;  // open addressing, a power of two
   std::vector<Range> cells_;
   std::vector<std::uint32_t> order_;

@@ -12,7 +12,7 @@ namespace opp {
 struct VotePeak {
   double theta = 0.0;                 ///< [rad] mean of the peak's votes, within a bin of [0, π)
   double rho = 0.0;                   ///< [m] mean of the peak's votes
-  std::vector<std::uint32_t> voters;  ///< as given to `cast`; empty: no votes are left
+  std::vector<std::uint32_t> voters;  ///< as given to `cast`, in that order
 };
 
 /// Accumulator over (θ, ρ) of one reference point. (θ, ρ) and (θ + π, −ρ) are the same plane: θ is
@@ -25,9 +25,10 @@ class VoteTable {
 
   /// One vote. θ ∈ [−2π, 2π] [rad], |ρ| ≤ radius [m]; `voter` comes back with the peak.
   void cast(float theta, float rho, std::uint32_t voter);
-  /// Takes the 3 × 3 bins with most votes out of the table (the one cast first wins ties); the next
-  /// call finds the next peak. O(votes).
-  VotePeak takePeak();
+  /// Takes the 3 × 3 bins with most votes out of the table (the one cast first wins ties) if they
+  /// hold at least `min_votes` ≥ 1; the next call finds the next peak. False, and nothing taken, if
+  /// they do not. O(votes).
+  bool takePeak(int min_votes, VotePeak& peak);
   /// Votes still in the table.
   std::size_t votes() const { return votes_.size(); }
   void clear();
@@ -41,23 +42,24 @@ class VoteTable {
   struct Bin {
     std::int32_t theta, rho;
   };
-  /// Place of a bin in counts_, which has a margin of one bin on each side.
+  /// Place of a bin in windows_, whose rows of ρ have a margin of one bin on each side.
   std::size_t index(int theta_bin, int rho_bin) const {
-    return static_cast<std::size_t>((theta_bin + 1) * (rho_bins_ + 2) + rho_bin + 1);
+    return static_cast<std::size_t>(theta_bin * (rho_bins_ + 2) + rho_bin + 1);
   }
   void count(const Vote& vote, std::int32_t change);
-  int windowVotes(int theta_bin, int rho_bin) const;
+  void addToRow(int theta_bin, int rho_bin, std::int32_t change);
   bool inWindow(const Vote& vote, Bin center, double& theta, double& rho) const;
 
   int theta_bins_, rho_bins_;
-  float radius_;
-  std::vector<std::int32_t> counts_;
+  float radius_, theta_scale_, rho_scale_;
+  std::vector<std::int32_t> windows_;  ///< votes in the 3 × 3 bins about each bin
   std::vector<Vote> votes_;
 };
 
 /// Smallest number of votes in a peak that accidental votes reach less than `false_alarms` times
 /// in `windows` places, if they fall into each with expectation `mean` (Chernoff's bound of the
-/// Poisson distribution). At least 3: fewer points fix no plane.
-int significantVotes(double mean, double windows, double false_alarms);
+/// Poisson distribution). At least 3: fewer points fix no plane. It grows with `mean`; `least` is a
+/// lower bound known from a smaller mean.
+int significantVotes(double mean, double windows, double false_alarms, int least = 3);
 
 }  // namespace opp

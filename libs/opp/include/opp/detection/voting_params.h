@@ -14,8 +14,9 @@ namespace opp {
 /// points, 250 partners within 1 m, δ_n = 20°, bins of 10° and 8 cm.
 struct VotingParams {
   static constexpr std::string_view kSection = "voting";
-  int reference_points = 250;                ///< N of the first round
-  int narrow_reference_points = 250;         ///< N of the second round
+  int reference_points = 250;                ///< N
+  int narrow_reference_points = 250;         ///< see visit
+  int round_size = 50;                       ///< see visit
   int partners = 300;                        ///< K
   double neighbourhood = 22.0;               ///< τ_d / spacing
   double narrowing = 3.0;                    ///< see visit
@@ -30,10 +31,13 @@ struct VotingParams {
   template <typename Self, typename F>
   static void visit(Self&& p, F&& f) {
     f(p.reference_points,
-      Field{"reference_points", "", 1, 1e7, "reference points, spread evenly over the cloud"});
+      Field{"reference_points", "", 1, 1e7, "at most this many reference points"});
     f(p.narrow_reference_points,
       Field{"narrow_reference_points", "", 0, 1e7,
-            "further ones, spread evenly over what lies on no plane found so far"});
+            "at most this many further ones, with partners from a narrower neighbourhood"});
+    f(p.round_size, Field{"round_size", "", 1, 1e7,
+                          "reference points at a time, spread evenly over the samples that lie on "
+                          "no plane found so far"});
     f(p.partners, Field{"partners", "", 1, 1e5, "at most this many partners per reference point"});
     f(p.neighbourhood,
       Field{"neighbourhood", "", 2.0, 1e4, "partners are nearer than this many sample spacings"});

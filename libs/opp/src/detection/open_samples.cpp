@@ -1,0 +1,56 @@
+// SPDX-FileCopyrightText: 2026 The opp-mapping authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "detection/open_samples.h"
+
+#include "detection/gather_hypotheses.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace opp {
+
+OpenSamples::OpenSamples(const std::vector<VotingSample>& samples, double reach, double angle)
+    : samples_(samples),
+      reach_(reach),
+      angle_(angle),
+      is_open_(samples.size(), 1),
+      open_(samples.size()) {
+  std::iota(open_.begin(), open_.end(), 0U);
+}
+
+std::vector<std::uint32_t> OpenSamples::take(const std::vector<std::uint32_t>& order, int count,
+                                             std::vector<std::uint8_t>& taken) const {
+  std::vector<std::uint32_t> candidates, chosen;
+  for (std::uint32_t position = 0; position < order.size(); ++position) {
+    if (is_open_[order[position]] != 0 && taken[position] == 0) candidates.push_back(position);
+  }
+  const std::size_t wanted = std::min(candidates.size(), static_cast<std::size_t>(count));
+  for (std::size_t k = 0; k < wanted; ++k) {
+    chosen.push_back(candidates[(2 * k + 1) * candidates.size() / (2 * wanted)]);
+    taken[chosen.back()] = 1;
+  }
+  return chosen;
+}
+
+std::size_t OpenSamples::close(const std::vector<PlaneHypothesis>& planes) {
+  const std::size_t before = open_.size();
+  const auto cosine = static_cast<float>(std::cos(angle_));
+  for (const std::size_t leader : gatherHypotheses(planes, reach_, angle_).leaders) {
+    const Eigen::Vector3f normal = planes[leader].plane.normal().cast<float>();
+    const auto d = static_cast<float>(planes[leader].plane.d());
+    std::size_t left = 0;
+    for (const std::uint32_t i : open_) {
+      const VotingSample& sample = samples_[i];
+      const bool on_plane = (std::abs(normal.dot(sample.point) + d) < sample.gate) &
+                            (std::abs(normal.dot(sample.normal)) > cosine);
+      is_open_[i] = on_plane ? 0 : 1;
+      open_[left] = i;
+      left += on_plane ? 0 : 1;
+    }
+    open_.resize(left);
+  }
+  return before - open_.size();
+}
+
+}  // namespace opp
