@@ -20,8 +20,8 @@
 
 #include <chrono>
 #include <filesystem>
-#include <map>
 #include <ostream>
+#include <vector>
 
 namespace {
 
@@ -31,7 +31,10 @@ double secondsSince(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
-opp::mapping::Mapper buildMap(const MapOptions& options, opp::mapping::RunReport& report) {
+using opp::mapping::MapState;
+using opp::mapping::RunReport;
+
+opp::mapping::Mapper buildMap(const MapOptions& options, RunReport& report) {
   opp::mapping::MapRawlogOptions input;
   input.selection = options.selection;
   input.threads = options.threads;
@@ -39,59 +42,77 @@ opp::mapping::Mapper buildMap(const MapOptions& options, opp::mapping::RunReport
     input.initial_poses = opp::mapping::readTumTrajectory(*options.initial_poses);
   opp::mapping::Mapper mapper(options.params);
   opp::apps::Progress progress("mapping", "frames", opp::apps::Progress::modeFor(options.quiet));
-  opp::mapping::mapRawlog(
-      options.rawlog, input, options.params.primitives,
-      [&](double fraction, std::size_t frames) { progress.update(fraction, frames); }, mapper,
-      report);
+  for (const std::filesystem::path& rawlog : options.rawlogs) {
+    opp::mapping::mapRawlog(
+        rawlog, input, options.params.primitives,
+        [&](double fraction, std::size_t frames) { progress.update(fraction, frames); }, mapper,
+        report);
+  }
+  opp::mapping::finishMapping(mapper, report);
   progress.finish();
   for (const std::string& warning : report.warnings) progress.log("warning: " + warning);
   return mapper;
 }
 
-void writeOccupancyMap(const MapOptions& options, const opp::mapping::Mapper& mapper,
-                       opp::mapping::RunReport& report, const std::filesystem::path& folder) {
+void writeOccupancyMap(const MapOptions& options, const MapState& map, RunReport& report,
+                       const std::filesystem::path& folder) {
   const auto start = std::chrono::steady_clock::now();
   opp::apps::Progress progress("octomap", "frames", opp::apps::Progress::modeFor(options.quiet));
-  const opp::mapping::OccupancyMap map = opp::mapping::buildOccupancyMap(
-      options.rawlog, options.selection, mapper.poses(), options.params.primitives.sensor,
-      options.params.occupancy, options.threads,
-      [&](double fraction, std::size_t frames) { progress.update(fraction, frames); });
+  opp::mapping::OccupancyMap octomap(options.params.occupancy);
+  for (std::size_t session = 0; session < options.rawlogs.size(); ++session) {
+    opp::mapping::insertRawlog(
+        options.rawlogs[session], options.selection,
+        opp::mapping::posesOf(map, static_cast<int>(session)), options.params.primitives.sensor,
+        options.threads,
+        [&](double fraction, std::size_t frames) { progress.update(fraction, frames); }, octomap);
+  }
   progress.finish();
-  map.write(folder / "map.ot", folder / "map.bt");
+  octomap.write(folder / "map.ot", folder / "map.bt");
   report.seconds["octomap"] = secondsSince(start);
 }
 
-void writePlanarMap(const MapOptions& options, const opp::mapping::Mapper& mapper,
-                    opp::mapping::RunReport& report, const std::filesystem::path& folder) {
+/// The files that tell of one map, as opposed to the run.
+opp::mapping::PlanarMap writeMap(const MapOptions& options, const MapState& map,
+                                 const std::filesystem::path& folder) {
+  const opp::mapping::PlanarMap planar = opp::mapping::planarMapOf(map, options.params.planar);
+  const opp::mapping::Trajectory trajectory = opp::mapping::trajectoryOf(map);
+  opp::mapping::writeTumTrajectory(folder / "trajectory.tum", trajectory);
+  opp::mapping::writePlanarMap(folder / "planar_map.json", planar);
+  opp::mapping::writePlanarExports(folder, planar, trajectory, options.params.planar);
+  return planar;
+}
+
+void writeMaps(const MapOptions& options, const opp::mapping::Mapper& mapper, RunReport& report,
+               const std::filesystem::path& folder) {
   const auto start = std::chrono::steady_clock::now();
-  const opp::mapping::PlanarMap map =
-      opp::mapping::planarMapOf(mapper.map(), options.params.planar);
-  opp::mapping::writePlanarMap(folder / "planar_map.json", map);
+  const opp::mapping::PlanarMap map = writeMap(options, mapper.map(), folder);
   report.counts["planes"] = map.planes.size();
   report.counts["lines"] = map.lines.size();
   report.counts["corners"] = map.corners.size();
   report.counts["families"] = map.families.size();
-  report.seconds["planar_map"] = secondsSince(start);
-  const auto export_start = std::chrono::steady_clock::now();
-  opp::mapping::writePlanarExports(folder, map, mapper.trajectory(), options.params.planar);
-  report.seconds["export"] = secondsSince(export_start);
+  for (std::size_t p = 1; p < mapper.parts().size(); ++p) {
+    const std::filesystem::path part = folder / "parts" / std::to_string(p);
+    std::filesystem::create_directories(part);
+    writeMap(options, mapper.parts()[p].map, part);
+  }
+  report.seconds["export"] = secondsSince(start);
 }
 
-void writeKeyframes(const MapOptions& options, const opp::mapping::Mapper& mapper,
-                    opp::mapping::RunReport& report, const std::filesystem::path& folder) {
+void writeKeyframes(const MapOptions& options, const MapState& map, RunReport& report,
+                    const std::filesystem::path& folder) {
   const auto start = std::chrono::steady_clock::now();
-  std::map<std::size_t, Eigen::Isometry3d> keyframes;
-  for (const opp::mapping::Keyframe& keyframe : mapper.map().keyframes) {
-    keyframes[keyframe.features.scan_index] = keyframe.map_from_body;
+  std::vector<opp::mapping::SimplemapSource> sources;
+  for (const std::filesystem::path& rawlog : options.rawlogs) sources.push_back({rawlog, {}});
+  for (const opp::mapping::Keyframe& keyframe : map.keyframes) {
+    sources[static_cast<std::size_t>(keyframe.features.session)]
+        .keyframes[keyframe.features.scan_index] = keyframe.map_from_body;
   }
-  opp::mapping::writeSimplemap(folder / "map.simplemap", options.rawlog, options.selection,
-                               keyframes);
+  opp::mapping::writeSimplemap(folder / "map.simplemap", sources, options.selection);
   report.seconds["simplemap"] = secondsSince(start);
 }
 
-void writeResults(const MapOptions& options, const opp::mapping::Mapper& mapper,
-                  const opp::mapping::RunReport& report, const std::filesystem::path& folder) {
-  opp::mapping::writeTumTrajectory(folder / "trajectory.tum", mapper.trajectory());
+void writeRun(const MapOptions& options, const RunReport& report,
+              const std::filesystem::path& folder) {
   opp::mapping::writeFileAtomically(folder / "effective.ini", [&](std::ostream& os) {
     opp::mapping::writeParameters(os, options.params);
   });
@@ -103,12 +124,12 @@ void writeResults(const MapOptions& options, const opp::mapping::Mapper& mapper,
 void run(opp::apps::CommandLine& line) {
   const MapOptions options = opp::apps::parseOptions(line);
   opp::mapping::OutputFolder output(options.output, options.force);
-  opp::mapping::RunReport report;
+  RunReport report;
   const opp::mapping::Mapper mapper = buildMap(options, report);
-  writePlanarMap(options, mapper, report, output.path());
-  writeKeyframes(options, mapper, report, output.path());
-  if (options.octomap) writeOccupancyMap(options, mapper, report, output.path());
-  writeResults(options, mapper, report, output.path());
+  writeMaps(options, mapper, report, output.path());
+  writeKeyframes(options, mapper.map(), report, output.path());
+  if (options.octomap) writeOccupancyMap(options, mapper.map(), report, output.path());
+  writeRun(options, report, output.path());
   output.commit();
 }
 
@@ -116,5 +137,5 @@ void run(opp::apps::CommandLine& line) {
 
 int main(int argc, char** argv) {
   return opp::apps::runMain(argc, argv, "opp-map",
-                            "Builds a map of planes, lines and corners from a rawlog.", run);
+                            "Builds a map of planes, lines and corners from rawlogs.", run);
 }

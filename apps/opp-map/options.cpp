@@ -22,7 +22,9 @@ std::string checkedExpression(const std::string& flag, const std::string& text) 
 }  // namespace
 
 MapOptions parseOptions(CommandLine& line) {
-  InputFlag input(line, "Rawlog to map");
+  InputsFlag input(line,
+                   "Rawlog to map; several are sessions of one place, with no known pose between "
+                   "them");
   OutputFlag output(line, "Folder for the results; made if needed", "FOLDER", true);
   ParameterFlags parameters(line);
   AtLeast not_negative(0);
@@ -49,7 +51,7 @@ MapOptions parseOptions(CommandLine& line) {
   line.parse();
 
   MapOptions options;
-  options.rawlog = input.getValue();
+  options.rawlogs.assign(input.getValue().begin(), input.getValue().end());
   options.output = output.getValue();
   options.selection.sensor_label = checkedExpression("--sensor-label", label.getValue());
   options.selection.from_index = static_cast<std::size_t>(from.getValue());

@@ -10,12 +10,13 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace opp::apps {
 
 /// What the user asked opp-map for.
 struct MapOptions {
-  std::filesystem::path rawlog;
+  std::vector<std::filesystem::path> rawlogs;  ///< one a session, at least one
   std::filesystem::path output;
   mapping::RawlogOptions selection;
   std::optional<std::filesystem::path> initial_poses;

@@ -4,8 +4,15 @@
 #include "support/run_command.h"
 #include "support/temp_folder.h"
 
+#include <Eigen/Core>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include <filesystem>
+#include <map>
+#include <sstream>
+#include <string>
 
 namespace opp::test {
 namespace {
@@ -82,6 +89,37 @@ TEST_F(OppMap, NoObservationSelectedIsExitCode1AndWritesNothing) {
   EXPECT_EQ(map({"-i", kDemo, "--sensor-label", "NO_SUCH_SENSOR"}).exit_code, 1);
   EXPECT_EQ(map({"-i", kDemo, "--from-index", "100000"}).exit_code, 1);
   EXPECT_TRUE(folder_.contents().empty());
+}
+
+TEST_F(OppMap, SessionsOfOnePlaceBecomeOneMap) {
+  const CommandResult result =
+      map({"-i", kDemo, "-i", kDemo, "--every", "2", "--no-octomap", "--to-index", "38"});
+  ASSERT_EQ(result.exit_code, 0) << result;
+  const auto run = nlohmann::json::parse(readFile(folder_ / "out/run.json"));
+  ASSERT_EQ(run["sessions"].size(), 2U);
+  EXPECT_EQ(run["counts"]["maps"], 1) << run["warnings"];
+  for (const auto& session : run["sessions"]) {
+    EXPECT_EQ(session["frames_read"], 19);
+    EXPECT_EQ(session["frames_used"], 19);
+    EXPECT_EQ(session["frames_apart"], 0);
+  }
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "out/parts"));
+  // Both sessions saw the same: scan by scan the two poses must agree.
+  std::map<std::string, Eigen::Vector3d> first;
+  std::istringstream lines(readFile(folder_ / "out/trajectory.tum"));
+  std::string line;
+  int compared = 0;
+  while (std::getline(lines, line)) {
+    std::istringstream fields(line);
+    std::string time;
+    Eigen::Vector3d position;
+    if (!(fields >> time >> position.x() >> position.y() >> position.z())) continue;
+    const auto [entry, is_first] = first.emplace(time, position);
+    if (is_first) continue;
+    ++compared;
+    EXPECT_LT((position - entry->second).norm(), 0.01) << time;
+  }
+  EXPECT_EQ(compared, 19);
 }
 
 TEST_F(OppMap, FinishedRunIsKeptUnlessForced) {

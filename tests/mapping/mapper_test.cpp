@@ -63,8 +63,8 @@ Mapper mapRoom(std::uint64_t room, int steps, double sigma) {
 TEST(Mapper, FollowsABodyThroughRoomsWithinTheNoise) {
   for (std::uint64_t room = 1; room <= 5; ++room) {
     const Mapper mapper = mapRoom(room, 30, 0.003);
-    ASSERT_EQ(mapper.trajectory().size(), 30U);
-    const auto [translation, rotation] = worstErrors(mapper.trajectory());
+    ASSERT_EQ(trajectoryOf(mapper.map()).size(), 30U);
+    const auto [translation, rotation] = worstErrors(trajectoryOf(mapper.map()));
     // Thousands of samples with 3 mm of noise fix a pose to a tenth of a millimetre; the part of
     // the noise that is taken as systematic and the keyframes in between leave a millimetre.
     EXPECT_LT(translation, 1e-3) << "room " << room;
@@ -92,12 +92,12 @@ TEST(Mapper, KeepsOneLandmarkPerPlane) {
 TEST(Mapper, WhatHoldsNothingIsNotLocalized) {
   Mapper mapper{MapperParams()};
   EXPECT_FALSE(mapper.add({}, std::nullopt).localized);
-  EXPECT_TRUE(mapper.trajectory().empty());
+  EXPECT_TRUE(trajectoryOf(mapper.map()).empty());
   EXPECT_TRUE(mapper.add(scanAt(0, 1, 0.0), std::nullopt).is_keyframe);
   EXPECT_FALSE(mapper.add({}, std::nullopt).localized);
   mapper.finish();
-  EXPECT_EQ(mapper.poses().size(), 1U);
-  EXPECT_EQ(mapper.poses().count(0), 1U);
+  EXPECT_EQ(posesOf(mapper.map(), 0).size(), 1U);
+  EXPECT_EQ(posesOf(mapper.map(), 0).count(0), 1U);
 }
 
 TEST(PlanarMapOf, DescribesTheRoom) {

@@ -56,7 +56,7 @@ TEST(WriteSimplemap, MrptBuildsTheMapFromIt) {
     const auto rawlog = rawlogOf(10, folder, external);
     std::map<std::size_t, Eigen::Isometry3d> keyframes;
     for (const std::size_t index : {0U, 3U, 7U}) keyframes[index] = random.pose(3.0);
-    writeSimplemap(folder / "map.simplemap", rawlog, {}, keyframes);
+    writeSimplemap(folder / "map.simplemap", {{rawlog, keyframes}}, {});
     std::filesystem::remove_all(folder / "a_Images");  // nothing outside is needed
 
     mrpt::maps::CSimpleMap map;
@@ -87,19 +87,31 @@ TEST(WriteSimplemap, MrptBuildsTheMapFromIt) {
 TEST(WriteSimplemap, MissingKeyframesLeaveNoFile) {
   const test::TempFolder folder;
   const auto rawlog = rawlogOf(3, folder, false);
-  EXPECT_THROW(
-      writeSimplemap(folder / "map.simplemap", rawlog, {}, {{5, Eigen::Isometry3d::Identity()}}),
-      std::runtime_error);
-  EXPECT_FALSE(std::filesystem::exists(folder / "map.simplemap"));
-  EXPECT_THROW(writeSimplemap(folder / "map.simplemap", folder / "none.rawlog", {},
-                              {{0, Eigen::Isometry3d::Identity()}}),
+  EXPECT_THROW(writeSimplemap(folder / "map.simplemap",
+                              {{rawlog, {{5, Eigen::Isometry3d::Identity()}}}}, {}),
                std::runtime_error);
-  EXPECT_THROW(writeSimplemap("/nowhere/map.simplemap", rawlog, {}, {}), std::exception);
+  EXPECT_FALSE(std::filesystem::exists(folder / "map.simplemap"));
+  EXPECT_THROW(writeSimplemap(folder / "map.simplemap",
+                              {{folder / "none.rawlog", {{0, Eigen::Isometry3d::Identity()}}}}, {}),
+               std::runtime_error);
+  EXPECT_THROW(writeSimplemap("/nowhere/map.simplemap", {{rawlog, {}}}, {}), std::exception);
+}
+
+TEST(WriteSimplemap, HoldsTheKeyframesOfAllSessions) {
+  const test::TempFolder folder;
+  const auto rawlog = rawlogOf(3, folder, false);
+  const std::map<std::size_t, Eigen::Isometry3d> one{{1, Eigen::Isometry3d::Identity()}};
+  const std::map<std::size_t, Eigen::Isometry3d> two{{0, Eigen::Isometry3d::Identity()},
+                                                     {2, Eigen::Isometry3d::Identity()}};
+  writeSimplemap(folder / "map.simplemap", {{rawlog, one}, {rawlog, two}}, {});
+  mrpt::maps::CSimpleMap map;
+  ASSERT_TRUE(map.loadFromFile((folder / "map.simplemap").string()));
+  EXPECT_EQ(map.size(), 3U);
 }
 
 TEST(WriteSimplemap, NoKeyframesIsAnEmptyMap) {
   const test::TempFolder folder;
-  writeSimplemap(folder / "map.simplemap", rawlogOf(1, folder, false), {}, {});
+  writeSimplemap(folder / "map.simplemap", {{rawlogOf(1, folder, false), {}}}, {});
   mrpt::maps::CSimpleMap map;
   ASSERT_TRUE(map.loadFromFile((folder / "map.simplemap").string()));
   EXPECT_EQ(map.size(), 0U);

@@ -3,6 +3,7 @@
 #include "opp/mapping/frontend/tracker.h"
 
 #include "opp/mapping/core/se3.h"
+#include "opp/mapping/frontend/build_local_map.h"
 #include "opp/mapping/frontend/insert_keyframe.h"
 
 #include "support/random.h"
@@ -45,7 +46,7 @@ Started startAt(std::uint64_t room, const Eigen::Isometry3d& pose) {
   match.map_from_body = pose;
   insertKeyframe(scanOf(room, 0, pose), match, SensorModel(), started.map);
   started.tracker.start({0.0, pose}, std::nullopt);
-  started.tracker.setLocalMap(started.map);
+  started.tracker.setLocalMap(localMapOf(started.map, {0}, MapperParams()));
   return started;
 }
 
@@ -118,7 +119,7 @@ TEST(Tracker, FollowsAMapThatMoved) {
   keyframe.map_from_body = new_from_old * keyframe.map_from_body;
   for (PlaneLandmark& landmark : started.map.landmarks.planes)
     landmark.plane_in_map = transformed(new_from_old, landmark.plane_in_map);
-  started.tracker.setLocalMap(started.map);
+  started.tracker.setLocalMap(localMapOf(started.map, {0}, MapperParams()));
   started.tracker.correct(keyframe.map_from_body);
   const Eigen::Isometry3d truth = poseAt(0.05, 0.06);
   const TrackResult result = started.tracker.track(scanOf(4, 1, truth), std::nullopt, started.map);
@@ -126,19 +127,6 @@ TEST(Tracker, FollowsAMapThatMoved) {
   const Vector6d error = difference(new_from_old * truth, result.match.map_from_body);
   EXPECT_LT(error.head<3>().norm(), 2e-3);
   EXPECT_LT(error.tail<3>().norm(), 2e-3);
-}
-
-TEST(LocalKeyframes, AreTheNearestOfTheNewestInOrder) {
-  EXPECT_TRUE(localKeyframes({}, 3).empty());
-  std::vector<Keyframe> keyframes(5);
-  const double x[] = {0.2, 9.0, 1.0, 5.0, 0.0};
-  for (std::size_t k = 0; k < keyframes.size(); ++k) {
-    keyframes[k].features.cloud_in_body.points = {Eigen::Vector3f::UnitZ()};
-    keyframes[k].features.cloud_in_body.normals = {Eigen::Vector3f::UnitZ()};
-    keyframes[k].map_from_body.translation().x() = x[k];
-  }
-  EXPECT_EQ(localKeyframes(keyframes, 3), (std::vector<int>{0, 2, 4}));
-  EXPECT_EQ(localKeyframes(keyframes, 9), (std::vector<int>{0, 1, 2, 3, 4}));
 }
 
 }  // namespace

@@ -78,4 +78,21 @@ class OrthogonalityCost {
   double sigma_;
 };
 
+/// sin(angle)/σ of two normals as the vector n1 × n2 / σ: zero for equal and for opposite normals.
+class ParallelismCost {
+ public:
+  explicit ParallelismCost(double sigma) : sigma_(sigma) {}
+
+  template <typename T>
+  bool operator()(const T* n1, const T* n2, T* residuals) const {
+    const Eigen::Map<const Eigen::Matrix<T, 3, 1>> first(n1), second(n2);
+    Eigen::Map<Eigen::Matrix<T, 3, 1>> cross(residuals);
+    cross = first.cross(second) / T(sigma_);
+    return true;
+  }
+
+ private:
+  double sigma_;
+};
+
 }  // namespace opp::mapping

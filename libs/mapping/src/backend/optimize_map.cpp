@@ -48,7 +48,12 @@ class MapProblem {
     }
     for (const PlaneFactor& f : factors.planes) addPlaneFactor(f);
     for (const RelativePoseFactor& f : factors.relative_poses) addRelativePose(f);
-    for (const OrthogonalityFactor& f : factors.orthogonalities) addOrthogonality(f);
+    for (const OrthogonalityFactor& f : factors.orthogonalities) {
+      addAngle<OrthogonalityCost, 1>(f.landmarks, params_.orthogonality_sigma);
+    }
+    for (const ParallelismFactor& f : factors.parallelisms) {
+      addAngle<ParallelismCost, 3>(f.landmarks, params_.parallelism_sigma);
+    }
     setManifolds();
   }
 
@@ -105,18 +110,20 @@ class MapProblem {
     PoseBlock& second = poses_[static_cast<std::size_t>(f.second)];
     problem_.AddResidualBlock(
         new ceres::AutoDiffCostFunction<RelativePoseCost, 6, 4, 3, 4, 3>(new RelativePoseCost(f)),
-        nullptr, first.q.coeffs().data(), first.t.data(), second.q.coeffs().data(),
-        second.t.data());
+        f.is_loop ? new ceres::CauchyLoss(params_.loop_kernel_width) : nullptr,
+        first.q.coeffs().data(), first.t.data(), second.q.coeffs().data(), second.t.data());
   }
 
-  void addOrthogonality(const OrthogonalityFactor& f) {
-    for (const int landmark : f.landmarks) requireIndex(landmark, planes_.size(), "landmark");
-    const auto a = static_cast<std::size_t>(f.landmarks[0]);
-    const auto b = static_cast<std::size_t>(f.landmarks[1]);
-    if (!plane_is_free_[a] && !plane_is_free_[b]) return;
-    problem_.AddResidualBlock(new ceres::AutoDiffCostFunction<OrthogonalityCost, 1, 3, 3>(
-                                  new OrthogonalityCost(params_.orthogonality_sigma)),
-                              nullptr, planes_[a].n.data(), planes_[b].n.data());
+  template <typename Cost, int kResiduals>
+  void addAngle(const std::array<int, 2>& landmarks, double sigma) {
+    for (const int landmark : landmarks) requireIndex(landmark, planes_.size(), "landmark");
+    const auto a = static_cast<std::size_t>(landmarks[0]);
+    const auto b = static_cast<std::size_t>(landmarks[1]);
+    if (!params_.angles || (!plane_is_free_[a] && !plane_is_free_[b])) return;
+    // Robust: a pair that other scans deny (a door that was moved) must not bend the map.
+    problem_.AddResidualBlock(
+        new ceres::AutoDiffCostFunction<Cost, kResiduals, 3, 3>(new Cost(sigma)),
+        new ceres::CauchyLoss(params_.kernel_width), planes_[a].n.data(), planes_[b].n.data());
   }
 
   void setManifolds() {

@@ -26,9 +26,8 @@ namespace {
 /// in memory. To readers it is an ordinary CSimpleMap.
 class StreamedSimpleMap : public mrpt::maps::CSimpleMap {
  public:
-  StreamedSimpleMap(const std::filesystem::path& rawlog, const RawlogOptions& selection,
-                    const std::map<std::size_t, Eigen::Isometry3d>& keyframes)
-      : rawlog_(rawlog), selection_(selection), keyframes_(keyframes) {}
+  StreamedSimpleMap(const std::vector<SimplemapSource>& sources, const RawlogOptions& selection)
+      : sources_(sources), selection_(selection) {}
 
   /// As the archive's operator, but errors come as they were thrown: MRPT wraps them.
   void writeTo(mrpt::serialization::CArchive& archive) const {
@@ -43,7 +42,10 @@ class StreamedSimpleMap : public mrpt::maps::CSimpleMap {
  protected:
   void serializeTo(mrpt::serialization::CArchive& out) const override {
     try {
-      writeKeyframes(out);
+      std::size_t count = 0;
+      for (const SimplemapSource& source : sources_) count += source.keyframes.size();
+      out.WriteAs<uint32_t>(count);
+      for (const SimplemapSource& source : sources_) writeKeyframes(source, out);
     } catch (...) {
       failure_ = std::current_exception();
       throw;
@@ -51,29 +53,29 @@ class StreamedSimpleMap : public mrpt::maps::CSimpleMap {
   }
 
  private:
-  void writeKeyframes(mrpt::serialization::CArchive& out) const {
-    out.WriteAs<uint32_t>(keyframes_.size());
-    RawlogStream stream(rawlog_);
+  void writeKeyframes(const SimplemapSource& source, mrpt::serialization::CArchive& out) const {
+    const auto& [rawlog, keyframes] = source;
+    RawlogStream stream(rawlog);
     ScanSelection selection(selection_);
     ObservationConverter converter(selection_.images_directory.empty()
-                                       ? imagesDirectoryOf(rawlog_)
+                                       ? imagesDirectoryOf(rawlog)
                                        : selection_.images_directory);
     RawlogCounts counts;
     std::size_t written = 0;
-    while (written < keyframes_.size()) {
+    while (written < keyframes.size()) {
       const std::optional<RawlogItem> item = stream.next();
       if (!item) break;
       if (!item->observation || !ObservationConverter::isScan(*item->observation)) continue;
       const std::optional<std::size_t> index = selection.take(*item->observation, counts);
-      const auto pose = index ? keyframes_.find(*index) : keyframes_.end();
-      if (pose == keyframes_.end()) continue;
+      const auto pose = index ? keyframes.find(*index) : keyframes.end();
+      if (pose == keyframes.end()) continue;
       embed(*item->observation, converter);
       write(pose->second, item->observation, out);
       ++written;
     }
-    if (written < keyframes_.size()) {
-      throw std::runtime_error(rawlog_.string() + " lacks " +
-                               std::to_string(keyframes_.size() - written) +
+    if (written < keyframes.size()) {
+      throw std::runtime_error(rawlog.string() + " lacks " +
+                               std::to_string(keyframes.size() - written) +
                                " of the keyframes; was it changed since it was mapped?");
     }
   }
@@ -87,24 +89,22 @@ class StreamedSimpleMap : public mrpt::maps::CSimpleMap {
     out << pose << frame;
   }
 
-  const std::filesystem::path& rawlog_;
+  const std::vector<SimplemapSource>& sources_;
   const RawlogOptions& selection_;
-  const std::map<std::size_t, Eigen::Isometry3d>& keyframes_;
   mutable std::exception_ptr failure_;
 };
 
 }  // namespace
 
-void writeSimplemap(const std::filesystem::path& path, const std::filesystem::path& rawlog,
-                    const RawlogOptions& selection,
-                    const std::map<std::size_t, Eigen::Isometry3d>& keyframes) {
+void writeSimplemap(const std::filesystem::path& path, const std::vector<SimplemapSource>& sources,
+                    const RawlogOptions& selection) {
   replaceFileAtomically(path, [&](const std::filesystem::path& temporary) {
     mrpt::io::CFileGZOutputStream stream;
     if (!stream.open(temporary.string(), 1)) {
       throw std::runtime_error(path.string() + " cannot be written; check folder and rights");
     }
     auto archive = mrpt::serialization::archiveFrom(stream);
-    StreamedSimpleMap(rawlog, selection, keyframes).writeTo(archive);
+    StreamedSimpleMap(sources, selection).writeTo(archive);
     stream.close();
   });
 }

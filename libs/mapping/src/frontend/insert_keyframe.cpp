@@ -30,6 +30,12 @@ std::vector<int> assignLandmarks(const Keyframe& keyframe,
   return landmark_of_plane;
 }
 
+Eigen::Vector3d meanPoint(const OrientedCloud& cloud) {
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for (const Eigen::Vector3f& point : cloud.points) sum += point.cast<double>();
+  return cloud.size() > 0 ? Eigen::Vector3d(sum / static_cast<double>(cloud.size())) : sum;
+}
+
 void addPlaneFactors(int id, const SensorModel& sensor, MapState& map) {
   const Keyframe& keyframe = map.keyframes[static_cast<std::size_t>(id)];
   const std::vector<PlaneSamples> planes = planeSamples(keyframe.features, sensor);
@@ -42,16 +48,28 @@ void addPlaneFactors(int id, const SensorModel& sensor, MapState& map) {
   }
 }
 
-void addOrthogonalities(const Keyframe& keyframe, MapFactors& factors) {
-  for (const OrthogonalityEdge& edge : keyframe.features.primitives_in_body.edges) {
-    std::array<int, 2> pair = {
-        keyframe.landmark_of_plane[static_cast<std::size_t>(edge.planes[0])],
-        keyframe.landmark_of_plane[static_cast<std::size_t>(edge.planes[1])]};
-    std::sort(pair.begin(), pair.end());
-    const bool known =
-        std::any_of(factors.orthogonalities.begin(), factors.orthogonalities.end(),
-                    [&](const OrthogonalityFactor& f) { return f.landmarks == pair; });
-    if (!known && pair[0] != pair[1]) factors.orthogonalities.push_back({pair});
+/// Adds the pair of landmarks unless it is there or is one landmark twice.
+template <typename Factor>
+void addPair(const Keyframe& keyframe, int plane_a, int plane_b, std::vector<Factor>& factors) {
+  std::array<int, 2> pair = {keyframe.landmark_of_plane[static_cast<std::size_t>(plane_a)],
+                             keyframe.landmark_of_plane[static_cast<std::size_t>(plane_b)]};
+  std::sort(pair.begin(), pair.end());
+  const bool known = std::any_of(factors.begin(), factors.end(),
+                                 [&](const Factor& f) { return f.landmarks == pair; });
+  if (!known && pair[0] != pair[1]) factors.push_back({pair});
+}
+
+void addAngles(const Keyframe& keyframe, MapFactors& factors) {
+  const Primitives& primitives = keyframe.features.primitives_in_body;
+  for (const OrthogonalityEdge& edge : primitives.edges) {
+    addPair(keyframe, edge.planes[0], edge.planes[1], factors.orthogonalities);
+  }
+  for (const ParallelFamily& family : primitives.families) {
+    // To the largest of the family: planes that are parallel to it are so to each other.
+    const auto area = [&](int p) { return primitives.planes[static_cast<std::size_t>(p)].area; };
+    const int largest = *std::max_element(family.planes.begin(), family.planes.end(),
+                                          [&](int a, int b) { return area(a) < area(b); });
+    for (const int plane : family.planes) addPair(keyframe, largest, plane, factors.parallelisms);
   }
 }
 
@@ -93,11 +111,12 @@ void addRelativePose(int id, const Matrix6d& point_information, MapState& map) {
 int insertKeyframe(ScanFeatures features, const MatchResult& match, const SensorModel& sensor,
                    MapState& map) {
   const int id = static_cast<int>(map.keyframes.size());
-  Keyframe keyframe{match.map_from_body, std::move(features), {}};
+  const Eigen::Vector3d view_centre = meanPoint(features.cloud_in_body);
+  Keyframe keyframe{match.map_from_body, std::move(features), {}, view_centre};
   keyframe.landmark_of_plane = assignLandmarks(keyframe, match.planes, map.landmarks);
   map.keyframes.push_back(std::move(keyframe));
   addPlaneFactors(id, sensor, map);
-  addOrthogonalities(map.keyframes.back(), map.factors);
+  addAngles(map.keyframes.back(), map.factors);
   addCorners(id, map);
   addRelativePose(id, match.point_information, map);
   return id;

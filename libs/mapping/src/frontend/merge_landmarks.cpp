@@ -61,6 +61,14 @@ bool areOneSurface(const Support& a, const Plane& plane_a, const Support& b, con
   return a.fits(plane, gate_sigmas) && b.fits(plane, gate_sigmas);
 }
 
+template <typename Factor>
+void redirectPairs(int from, int to, std::vector<Factor>& factors) {
+  for (Factor& factor : factors) {
+    std::replace(factor.landmarks.begin(), factor.landmarks.end(), from, to);
+    std::sort(factor.landmarks.begin(), factor.landmarks.end());
+  }
+}
+
 void redirect(int from, int to, MapState& map) {
   for (PlaneFactor& factor : map.factors.planes) {
     if (factor.landmark == from) factor.landmark = to;
@@ -68,10 +76,8 @@ void redirect(int from, int to, MapState& map) {
   for (Keyframe& keyframe : map.keyframes) {
     std::replace(keyframe.landmark_of_plane.begin(), keyframe.landmark_of_plane.end(), from, to);
   }
-  for (OrthogonalityFactor& factor : map.factors.orthogonalities) {
-    std::replace(factor.landmarks.begin(), factor.landmarks.end(), from, to);
-    std::sort(factor.landmarks.begin(), factor.landmarks.end());
-  }
+  redirectPairs(from, to, map.factors.orthogonalities);
+  redirectPairs(from, to, map.factors.parallelisms);
   for (CornerLandmark& corner : map.landmarks.corners) {
     std::replace(corner.planes.begin(), corner.planes.end(), from, to);
     std::sort(corner.planes.begin(), corner.planes.end());
@@ -86,16 +92,22 @@ void redirect(int from, int to, MapState& map) {
   source.clear();
 }
 
-/// Joining planes makes some right angles and corners the same, and some join a plane with itself.
-void removeDuplicates(MapState& map) {
+/// Keeps the first of equal pairs and no pair of a landmark with itself.
+template <typename Factor>
+void removeDuplicatePairs(std::vector<Factor>& factors) {
   std::set<std::array<int, 2>> pairs;
-  auto& angles = map.factors.orthogonalities;
-  angles.erase(std::remove_if(angles.begin(), angles.end(),
-                              [&](const OrthogonalityFactor& f) {
-                                return f.landmarks[0] == f.landmarks[1] ||
-                                       !pairs.insert(f.landmarks).second;
-                              }),
-               angles.end());
+  factors.erase(std::remove_if(factors.begin(), factors.end(),
+                               [&](const Factor& f) {
+                                 return f.landmarks[0] == f.landmarks[1] ||
+                                        !pairs.insert(f.landmarks).second;
+                               }),
+                factors.end());
+}
+
+/// Joining planes makes some pairs and corners the same, and some join a plane with itself.
+void removeDuplicates(MapState& map) {
+  removeDuplicatePairs(map.factors.orthogonalities);
+  removeDuplicatePairs(map.factors.parallelisms);
   std::vector<CornerLandmark> corners;
   for (CornerLandmark& corner : map.landmarks.corners) {
     if (corner.planes[0] == corner.planes[1] || corner.planes[1] == corner.planes[2]) continue;

@@ -4,23 +4,9 @@
 
 #include "opp/mapping/registration/align_globally.h"
 
-#include <algorithm>
-#include <numeric>
 #include <utility>
 
 namespace opp::mapping {
-namespace {
-
-/// Where a keyframe looks: the mean of what it saw.
-Eigen::Vector3d viewCentre(const Keyframe& keyframe) {
-  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-  for (const Eigen::Vector3f& point : keyframe.features.cloud_in_body.points)
-    sum += point.cast<double>();
-  return keyframe.map_from_body *
-         Eigen::Vector3d(sum / static_cast<double>(keyframe.features.cloud_in_body.size()));
-}
-
-}  // namespace
 
 std::string_view describe(TrackOutcome outcome) {
   switch (outcome) {
@@ -92,45 +78,6 @@ bool Tracker::wantsKeyframe(const MatchResult& match, const Keyframe& newest) co
   const Eigen::Isometry3d newest_from_now = newest.map_from_body.inverse() * match.map_from_body;
   return match.overlap < params_.frontend.keyframe_overlap ||
          rotationAngle(newest_from_now) > params_.frontend.keyframe_rotation;
-}
-
-void Tracker::setLocalMap(const MapState& map) {
-  if (map.keyframes.empty()) {
-    local_map_.reset();
-    return;
-  }
-  const std::vector<int> ids =
-      localKeyframes(map.keyframes, static_cast<std::size_t>(params_.frontend.local_keyframes));
-  double spacing = 0.0;
-  for (const int id : ids) {
-    spacing = std::max(spacing,
-                       map.keyframes[static_cast<std::size_t>(id)].features.cloud_in_body.spacing);
-  }
-  local_map_.emplace(spacing, params_.primitives.sensor, params_.registration);
-  for (const int id : ids) {
-    const Keyframe& keyframe = map.keyframes[static_cast<std::size_t>(id)];
-    local_map_->insert(keyframe.features, keyframe.map_from_body, keyframe.landmark_of_plane);
-  }
-  std::vector<Plane> planes;
-  for (const PlaneLandmark& landmark : map.landmarks.planes)
-    planes.push_back(landmark.plane_in_map);
-  local_map_->setLandmarks(std::move(planes));
-}
-
-std::vector<int> localKeyframes(const std::vector<Keyframe>& keyframes, std::size_t count) {
-  if (keyframes.empty()) return {};
-  const Eigen::Vector3d here = viewCentre(keyframes.back());
-  std::vector<double> distance;
-  for (const Keyframe& keyframe : keyframes)
-    distance.push_back((viewCentre(keyframe) - here).norm());
-  std::vector<int> ids(keyframes.size());
-  std::iota(ids.begin(), ids.end(), 0);
-  std::stable_sort(ids.begin(), ids.end(), [&](int a, int b) {
-    return distance[static_cast<std::size_t>(a)] < distance[static_cast<std::size_t>(b)];
-  });
-  ids.resize(std::min(ids.size(), count));
-  std::sort(ids.begin(), ids.end());
-  return ids;
 }
 
 }  // namespace opp::mapping

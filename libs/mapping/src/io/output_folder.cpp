@@ -23,10 +23,10 @@ constexpr std::string_view kFinishedMark = "run.json";
 constexpr std::string_view kLockFile = ".lock";
 
 /// Every file that a run may leave in its folder (the contract's table for opp-map).
-constexpr std::array<std::string_view, 13> kRunFiles = {
+constexpr std::array<std::string_view, 14> kRunFiles = {
     "run.json",       "trajectory.tum", "map.bt",         "map.ot",        "planar_map.json",
     "planar_map.ply", "planar_map.obj", "planar_map.glb", "floorplan.svg", "scene.3Dscene",
-    "map.simplemap",  "report.html",    "effective.ini"};
+    "map.simplemap",  "report.html",    "effective.ini",  "parts"};
 
 [[noreturn]] void fail(const fs::path& folder, const std::string& reason) {
   throw std::runtime_error("output folder " + folder.string() + ": " + reason);
@@ -86,7 +86,7 @@ void OutputFolder::commit() {
   }
   names.emplace_back(kFinishedMark);
   // The mark goes first and comes last: a folder with it never holds a mixture of two runs.
-  for (const std::string_view name : kRunFiles) fs::remove(folder_ / name);
+  for (const std::string_view name : kRunFiles) fs::remove_all(folder_ / name);
   for (const fs::path& name : names) {
     if (fs::is_directory(folder_ / name)) fs::remove_all(folder_ / name);
     fs::rename(unfinished_ / name, folder_ / name);

@@ -19,6 +19,7 @@ Json sessionJson(const SessionReport& session) {
   return {{"input", {{"path", session.path}, {"size", session.bytes}, {"sha256", session.sha256}}},
           {"frames_read", session.frames_read},
           {"frames_used", session.frames_used},
+          {"frames_apart", session.frames_apart},
           {"frames_lost", session.frames_lost},
           {"keyframes", session.keyframes},
           {"path_length_m", session.path_length},

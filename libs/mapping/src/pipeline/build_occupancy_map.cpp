@@ -28,12 +28,10 @@ OccupancyScan returnsInMap(const PointCloud& cloud_in_body, const Eigen::Isometr
 
 }  // namespace
 
-OccupancyMap buildOccupancyMap(const std::filesystem::path& rawlog, const RawlogOptions& selection,
-                               const std::map<std::size_t, Eigen::Isometry3d>& map_from_body,
-                               const SensorModel& range_limits, const OccupancyParams& params,
-                               int threads,
-                               const std::function<void(double, std::size_t)>& progress) {
-  OccupancyMap map(params);
+void insertRawlog(const std::filesystem::path& rawlog, const RawlogOptions& selection,
+                  const std::map<std::size_t, Eigen::Isometry3d>& map_from_body,
+                  const SensorModel& range_limits, int threads,
+                  const std::function<void(double, std::size_t)>& progress, OccupancyMap& map) {
   RawlogReader reader(rawlog, selection);
   const std::size_t batch_size =
       kScansPerThread * static_cast<std::size_t>(resolveThreads(threads));
@@ -50,7 +48,6 @@ OccupancyMap buildOccupancyMap(const std::filesystem::path& rawlog, const Rawlog
     if (progress) progress(reader.progress(), ++count);
   }
   map.insertScans(batch, threads);
-  return map;
 }
 
 }  // namespace opp::mapping

@@ -19,16 +19,6 @@ double secondsSince(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-double pathLength(const Trajectory& trajectory) {
-  double length = 0.0;
-  for (std::size_t i = 1; i < trajectory.size(); ++i) {
-    length +=
-        (trajectory[i].map_from_body.translation() - trajectory[i - 1].map_from_body.translation())
-            .norm();
-  }
-  return length;
-}
-
 /// Predictions are for a scan if their stamps agree this well [s]: text files round stamps.
 constexpr double kSameTime = 1e-3;
 
@@ -40,16 +30,61 @@ std::optional<Eigen::Isometry3d> poseNear(const Trajectory& trajectory, double t
   return pose->map_from_body;
 }
 
-void addWarnings(const RawlogReader& reader, const SessionReport& session, RunReport& report) {
+void addWarnings(const RawlogReader& reader, const std::string& path, RunReport& report) {
   if (!reader.damage().empty()) report.warnings.push_back(reader.damage());
   for (const auto& [reason, count] : reader.counts().skipped) {
-    report.warnings.push_back(session.path + ": " + std::to_string(count) +
+    report.warnings.push_back(path + ": " + std::to_string(count) +
                               " observations without 3D data: " + reason);
   }
+}
+
+std::size_t scansOf(const MapState& map, int session) {
+  return static_cast<std::size_t>(
+      std::count_if(map.scans.begin(), map.scans.end(),
+                    [&](const LocalizedScan& scan) { return scan.session == session; }));
+}
+
+double pathLength(const std::map<std::size_t, Eigen::Isometry3d>& poses) {
+  double length = 0.0;
+  for (auto pose = poses.begin(); pose != poses.end(); ++pose) {
+    const auto next = std::next(pose);
+    if (next == poses.end()) break;
+    length += (next->second.translation() - pose->second.translation()).norm();
+  }
+  return length;
+}
+
+std::size_t loopsOf(const MapState& map, int session) {
+  const auto& factors = map.factors.relative_poses;
+  const auto isOf = [&](int keyframe) {
+    return map.keyframes[static_cast<std::size_t>(keyframe)].features.session == session;
+  };
+  return static_cast<std::size_t>(std::count_if(
+      factors.begin(), factors.end(),
+      [&](const RelativePoseFactor& f) { return f.is_loop && (isOf(f.first) || isOf(f.second)); }));
+}
+
+void describe(const Mapper& mapper, int id, SessionReport& session) {
+  session.frames_used = scansOf(mapper.map(), id);
+  for (const MapPart& part : mapper.parts()) session.frames_apart += scansOf(part.map, id);
+  session.frames_apart -= session.frames_used;
+  session.frames_lost = session.frames_read - session.frames_used - session.frames_apart;
+  for (const Keyframe& keyframe : mapper.map().keyframes) {
+    if (keyframe.features.session == id) ++session.keyframes;
+  }
+  session.path_length = pathLength(posesOf(mapper.map(), id));
+  session.loop_closures = loopsOf(mapper.map(), id);
+}
+
+void warn(const SessionReport& session, std::vector<std::string>& warnings) {
+  const std::string of_all = " of " + std::to_string(session.frames_read) + " scans ";
   if (session.frames_lost > 0) {
-    report.warnings.push_back(session.path + ": " + std::to_string(session.frames_lost) + " of " +
-                              std::to_string(session.frames_read) +
-                              " scans could not be localized and are not in the map");
+    warnings.push_back(session.path + ": " + std::to_string(session.frames_lost) + of_all +
+                       "could not be localized and are in no map");
+  }
+  if (session.frames_apart > 0) {
+    warnings.push_back(session.path + ": " + std::to_string(session.frames_apart) + of_all +
+                       "are in maps of their own (folder parts): nothing proved where they belong");
   }
 }
 
@@ -60,32 +95,42 @@ void mapRawlog(const std::filesystem::path& rawlog, const MapRawlogOptions& opti
                RunReport& report) {
   RawlogReader reader(rawlog, options.selection);
   FeatureStream stream(reader, params, options.threads);
+  const int id = static_cast<int>(report.sessions.size());
   SessionReport session;
   session.path = rawlog.string();
   const Clock::time_point start = Clock::now();
   double seconds_tracking = 0.0;
+  mapper.startSession();
   while (std::optional<FeatureFrame> frame = stream.next()) {
     const Clock::time_point start_tracking = Clock::now();
+    frame->features.session = id;
     const auto given = poseNear(options.initial_poses, frame->features.timestamp);
-    if (given && session.frames_read == 0) mapper.setInitialPose(*given);
-    const FrameResult result =
-        mapper.add(std::move(frame->features), given ? given : frame->odom_from_body);
+    if (given && id == 0 && session.frames_read == 0) mapper.setInitialPose(*given);
+    mapper.add(std::move(frame->features), given ? given : frame->odom_from_body);
     seconds_tracking += secondsSince(start_tracking);
     ++session.frames_read;
-    ++(result.localized ? session.frames_used : session.frames_lost);
     if (progress) progress(reader.progress(), session.frames_read);
   }
-  const Clock::time_point start_finish = Clock::now();
-  mapper.finish();
-  report.seconds["optimization"] += secondsSince(start_finish);
   report.seconds["registration"] += seconds_tracking;
   report.seconds["frames"] += secondsSince(start);
   session.bytes = std::filesystem::file_size(rawlog);
   session.sha256 = sha256OfFile(rawlog);
-  session.keyframes = mapper.map().keyframes.size();
-  session.path_length = pathLength(mapper.trajectory());
-  addWarnings(reader, session, report);
+  addWarnings(reader, session.path, report);
   report.sessions.push_back(std::move(session));
+}
+
+void finishMapping(Mapper& mapper, RunReport& report) {
+  const Clock::time_point start = Clock::now();
+  mapper.finish();
+  report.seconds["optimization"] += secondsSince(start);
+  int id = 0;
+  for (SessionReport& session : report.sessions) {
+    describe(mapper, id++, session);
+    warn(session, report.warnings);
+  }
+  report.counts["maps"] = mapper.parts().size();
+  report.counts["keyframes"] = mapper.map().keyframes.size();
+  report.counts["loop_closures"] = mapper.map().loop_closures;
 }
 
 }  // namespace opp::mapping

@@ -2,94 +2,140 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "opp/mapping/pipeline/mapper.h"
 
-#include "opp/mapping/backend/optimize_map.h"
+#include "opp/mapping/backend/settle_map.h"
+#include "opp/mapping/frontend/build_local_map.h"
 #include "opp/mapping/frontend/insert_keyframe.h"
-#include "opp/mapping/frontend/merge_landmarks.h"
+#include "opp/mapping/loop/keyframe_graph.h"
+
+#include <Eigen/Eigenvalues>
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 namespace opp::mapping {
-Mapper::Mapper(const MapperParams& params) : params_(params), tracker_(params) {}
+namespace {
+
+/// A scan that fixes its pose in every direction can found a map: its normals spread over space.
+bool canFoundMap(const OrientedCloud& cloud, double min_spread) {
+  if (cloud.size() == 0) return false;
+  Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
+  for (const Eigen::Vector3f& normal : cloud.normals) {
+    const Eigen::Vector3d n = normal.cast<double>();
+    sum += n * n.transpose();
+  }
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(sum, Eigen::EigenvaluesOnly);
+  return eigen.eigenvalues()[0] >= min_spread * static_cast<double>(cloud.size());
+}
+
+Eigen::Isometry3d poseOf(const MapState& map, const LocalizedScan& scan) {
+  const Keyframe& keyframe = map.keyframes[static_cast<std::size_t>(scan.keyframe)];
+  return normalized(keyframe.map_from_body * scan.keyframe_from_body);
+}
+
+}  // namespace
+
+Mapper::Mapper(const MapperParams& params)
+    : params_(params), tracker_(params), loop_closer_(params), joiner_(params) {}
+
+const MapState& Mapper::map() const { return parts_.empty() ? empty_ : parts_.front().map; }
 
 FrameResult Mapper::add(ScanFeatures scan, const std::optional<Eigen::Isometry3d>& odom_from_body) {
-  if (scan.cloud_in_body.size() == 0) return {};
-  if (map_.keyframes.empty()) return start(std::move(scan), odom_from_body);
-
-  const double timestamp = scan.timestamp;
-  const std::size_t index = scan.scan_index;
-  const TrackResult track = tracker_.track(scan, odom_from_body, map_);
+  if (!continues_) return begin(std::move(scan), odom_from_body);
+  TrackResult track = tracker_.track(scan, odom_from_body, active());
   FrameResult result{track.localized(), track.wants_keyframe, track.match.overlap, track.match.rms};
-  if (!result.localized) return result;
-  if (result.is_keyframe) {
+  if (!track.localized()) {
+    if (++lost_in_a_row_ < params_.loop.lost_scans) return result;
+    return begin(std::move(scan), odom_from_body);
+  }
+  lost_in_a_row_ = 0;
+  if (track.wants_keyframe) {
     addKeyframe(std::move(scan), track.match);
-    tracker_.correct(map_.keyframes.back().map_from_body);
-    follow(timestamp, index, map_.keyframes.back().map_from_body);
   } else {
-    follow(timestamp, index, track.match.map_from_body);
+    follow(scan, track.match.map_from_body);
   }
   return result;
 }
 
-FrameResult Mapper::start(ScanFeatures scan,
+FrameResult Mapper::begin(ScanFeatures scan,
                           const std::optional<Eigen::Isometry3d>& odom_from_body) {
+  // The very first scan of a session founds a map whatever it shows: there is nothing to wait for.
+  if (scan.cloud_in_body.size() == 0) return {};
+  if (continues_ && !canFoundMap(scan.cloud_in_body, params_.loop.min_normal_spread)) return {};
+  parts_.emplace_back(next_part_++, params_.loop);
   MatchResult match;
-  match.map_from_body = initial_pose_;
-  const double timestamp = scan.timestamp;
-  const std::size_t index = scan.scan_index;
-  tracker_.start({timestamp, initial_pose_}, odom_from_body);
+  if (parts_.size() == 1) match.map_from_body = initial_pose_;
+  continues_ = true;
+  lost_in_a_row_ = 0;
+  loop_closer_.reset();
+  local_.clear();
+  tracker_.start({scan.timestamp, match.map_from_body}, odom_from_body);
   addKeyframe(std::move(scan), match);
-  follow(timestamp, index, initial_pose_);
   return {true, true, 1.0, 0.0};
 }
 
 void Mapper::addKeyframe(ScanFeatures scan, const MatchResult& match) {
-  const int id = insertKeyframe(std::move(scan), match, params_.primitives.sensor, map_);
-  const int first_free = std::max(1, id + 1 - params_.backend.window);
-  if (id > 0) optimize(first_free);
-  if (mergeLandmarks(map_, params_.registration.plane_gate_sigmas) > 0 && id > 0)
-    optimize(first_free);
-  tracker_.setLocalMap(map_);
+  MapState& map = active();
+  const int id = insertKeyframe(std::move(scan), match, params_.primitives.sensor, map);
+  const Keyframe& keyframe = map.keyframes.back();
+  map.scans.push_back({keyframe.features.timestamp, keyframe.features.session,
+                       keyframe.features.scan_index, id, Eigen::Isometry3d::Identity()});
+  parts_.back().index.add(keyframe.features.primitives_in_body);
+  linkKeyframe(local_, params_.loop, map);
+  settleMap(map, std::max(1, id + 1 - params_.backend.window), params_);
+  if (params_.loop.close_loops) loop_closer_.close(map);
+  if (joiner_.joinNewest(parts_)) loop_closer_.reset();
+  local_ = localKeyframes(active());
+  tracker_.setLocalMap(localMapOf(active(), local_, params_));
+  tracker_.correct(active().keyframes.back().map_from_body);
 }
 
-void Mapper::follow(double timestamp, std::size_t scan_index,
-                    const Eigen::Isometry3d& map_from_body) {
-  const Eigen::Isometry3d keyframe_from_map = map_.keyframes.back().map_from_body.inverse();
-  followers_.push_back({timestamp, scan_index, static_cast<int>(map_.keyframes.size()) - 1,
-                        keyframe_from_map * map_from_body});
+void Mapper::follow(const ScanFeatures& scan, const Eigen::Isometry3d& map_from_body) {
+  MapState& map = active();
+  const Eigen::Isometry3d keyframe_from_map = map.keyframes.back().map_from_body.inverse();
+  map.scans.push_back({scan.timestamp, scan.session, scan.scan_index,
+                       static_cast<int>(map.keyframes.size()) - 1,
+                       keyframe_from_map * map_from_body});
 }
 
-void Mapper::optimize(int first_free) {
-  std::vector<Eigen::Isometry3d> poses;
-  for (const Keyframe& keyframe : map_.keyframes) poses.push_back(keyframe.map_from_body);
-  std::vector<Plane> planes;
-  for (const PlaneLandmark& landmark : map_.landmarks.planes)
-    planes.push_back(landmark.plane_in_map);
-  optimizeMap(map_.factors, first_free, params_.backend, poses, planes);
-  for (std::size_t k = 0; k < poses.size(); ++k) map_.keyframes[k].map_from_body = poses[k];
-  for (std::size_t k = 0; k < planes.size(); ++k) map_.landmarks.planes[k].plane_in_map = planes[k];
-  updateCorners(map_.landmarks);
+/// Keyframes that look where the newest one does, and whose pose relative to it is known well
+/// enough to take their surfaces for one.
+std::vector<int> Mapper::localKeyframes(const MapState& map) const {
+  const int newest = static_cast<int>(map.keyframes.size()) - 1;
+  const double voxel =
+      params_.registration.surfel_size_ratio * map.keyframes.back().features.cloud_in_body.spacing;
+  return nearestViews(map, newest, relativeVariances(map, newest),
+                      std::pow(params_.loop.connected_ratio * voxel, 2),
+                      params_.frontend.local_keyframes);
 }
 
 void Mapper::finish() {
-  if (map_.keyframes.size() > 1) optimize(1);
+  joiner_.joinAll(parts_);
+  for (MapPart& part : parts_) settleMap(part.map, 1, params_);
+  std::stable_sort(parts_.begin(), parts_.end(), [](const MapPart& a, const MapPart& b) {
+    return a.map.scans.size() > b.map.scans.size();
+  });
+  const auto small = [&](const MapPart& part) {
+    return part.map.keyframes.size() < static_cast<std::size_t>(params_.loop.min_keyframes);
+  };
+  if (parts_.size() > 1)
+    parts_.erase(std::remove_if(parts_.begin() + 1, parts_.end(), small), parts_.end());
 }
 
-Eigen::Isometry3d Mapper::poseOf(const Follower& follower) const {
-  const Keyframe& keyframe = map_.keyframes[static_cast<std::size_t>(follower.keyframe)];
-  return normalized(keyframe.map_from_body * follower.keyframe_from_body);
-}
-
-Trajectory Mapper::trajectory() const {
+Trajectory trajectoryOf(const MapState& map) {
   Trajectory result;
-  for (const Follower& follower : followers_)
-    result.push_back({follower.timestamp, poseOf(follower)});
+  for (const LocalizedScan& scan : map.scans) result.push_back({scan.timestamp, poseOf(map, scan)});
+  std::stable_sort(result.begin(), result.end(), [](const StampedPose& a, const StampedPose& b) {
+    return a.timestamp < b.timestamp;
+  });
   return result;
 }
 
-std::map<std::size_t, Eigen::Isometry3d> Mapper::poses() const {
+std::map<std::size_t, Eigen::Isometry3d> posesOf(const MapState& map, int session) {
   std::map<std::size_t, Eigen::Isometry3d> result;
-  for (const Follower& follower : followers_) result.emplace(follower.scan_index, poseOf(follower));
+  for (const LocalizedScan& scan : map.scans) {
+    if (scan.session == session) result.emplace(scan.scan_index, poseOf(map, scan));
+  }
   return result;
 }
 

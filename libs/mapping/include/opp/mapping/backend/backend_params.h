@@ -15,7 +15,13 @@ struct BackendParams {
   int window = 10;
   int max_iterations = 30;
   double kernel_width = 3.0;
-  double orthogonality_sigma = degToRad(0.1);
+  /// Right angles and parallelism are tested in single scans, whose planes err by this much
+  /// together however many points they have (RefinementParams::systematic_angle).
+  double orthogonality_sigma = degToRad(0.25);
+  double parallelism_sigma = degToRad(0.25);
+  bool angles = true;
+  /// Wide: a loop may have to pull the map by many of its own sigmas, which are millimetres.
+  double loop_kernel_width = 100.0;
 
   template <typename Self, typename F>
   static void visit(Self&& p, F&& f) {
@@ -26,6 +32,11 @@ struct BackendParams {
                             "Cauchy kernel of a (keyframe, plane) pair, in sigmas per sample"});
     f(p.orthogonality_sigma, Field{"orthogonality_sigma", "rad", 1e-6, 1.0,
                                    "uncertainty of a right angle that the scans support"});
+    f(p.parallelism_sigma, Field{"parallelism_sigma", "rad", 1e-6, 1.0,
+                                 "uncertainty of parallel planes that the scans support"});
+    f(p.angles, Field{"angles", "", 0, 1, "use right angles and parallel planes at all"});
+    f(p.loop_kernel_width,
+      Field{"loop_kernel_width", "", 0.1, 1e6, "Cauchy kernel of a loop closure, in sigmas"});
   }
 };
 

@@ -27,6 +27,8 @@ struct RelativePoseFactor {
   int second = 0;
   Eigen::Isometry3d first_from_second = Eigen::Isometry3d::Identity();
   Matrix6d information = Matrix6d::Zero();  ///< of (ω, v) in the frame of `first`, see `retract`
+  /// A claim that two places are one: the optimization may come to disbelieve it.
+  bool is_loop = false;
 };
 
 /// Two plane landmarks that scans showed to meet at a right angle.
@@ -34,11 +36,17 @@ struct OrthogonalityFactor {
   std::array<int, 2> landmarks{};
 };
 
+/// Two plane landmarks that scans showed to be parallel (normals equal or opposite).
+struct ParallelismFactor {
+  std::array<int, 2> landmarks{};
+};
+
 /// All that ties poses and landmarks together.
 struct MapFactors {
   std::vector<PlaneFactor> planes;
   std::vector<RelativePoseFactor> relative_poses;
-  std::vector<OrthogonalityFactor> orthogonalities;  ///< each pair once
+  std::vector<OrthogonalityFactor> orthogonalities;  ///< each pair once, ascending ids
+  std::vector<ParallelismFactor> parallelisms;       ///< each pair once, ascending ids
 };
 
 }  // namespace opp::mapping

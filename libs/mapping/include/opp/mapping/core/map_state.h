@@ -6,15 +6,37 @@
 #include "opp/mapping/core/landmark_map.h"
 #include "opp/mapping/core/map_factors.h"
 
+#include <cstddef>
 #include <vector>
 
 namespace opp::mapping {
 
-/// The map as it grows: keyframes, landmarks, and the measurements that tie them together.
+/// A scan that was localized; its pose follows the keyframe that was the newest when it came.
+struct LocalizedScan {
+  double timestamp = 0.0;  ///< Unix time [s]
+  int session = 0;
+  std::size_t scan_index = 0;  ///< see ScanFeatures
+  int keyframe = 0;
+  Eigen::Isometry3d keyframe_from_body = Eigen::Isometry3d::Identity();
+};
+
+/// Two keyframes whose relative pose was measured, and how well: what tells whether a place that
+/// comes into view again is where the map has it.
+struct KeyframeLink {
+  int first = 0;
+  int second = 0;
+  double variance = 0.0;  ///< of the relative position, worst direction [m²]
+};
+
+/// The map as it grows: keyframes, landmarks, and the measurements that tie them together. Its
+/// frame is that of its first keyframe.
 struct MapState {
   std::vector<Keyframe> keyframes;
   LandmarkMap landmarks;
   MapFactors factors;
+  std::vector<KeyframeLink> links;
+  std::vector<LocalizedScan> scans;  ///< all localized scans, keyframes included
+  std::size_t loop_closures = 0;     ///< places recognized, joins of maps included
 };
 
 }  // namespace opp::mapping

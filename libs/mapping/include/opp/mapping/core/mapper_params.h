@@ -5,6 +5,7 @@
 #include "opp/mapping/backend/backend_params.h"
 #include "opp/mapping/dense/occupancy_params.h"
 #include "opp/mapping/frontend/frontend_params.h"
+#include "opp/mapping/loop/loop_params.h"
 #include "opp/mapping/planar/planar_params.h"
 #include "opp/mapping/registration/global_alignment_params.h"
 #include "opp/mapping/registration/registration_params.h"
@@ -21,6 +22,7 @@ struct MapperParams {
   GlobalAlignmentParams global_alignment;
   FrontendParams frontend;
   BackendParams backend;
+  LoopParams loop;
   OccupancyParams occupancy;
   PlanarParams planar;
 
@@ -32,6 +34,7 @@ struct MapperParams {
     f(p.global_alignment);
     f(p.frontend);
     f(p.backend);
+    f(p.loop);
     f(p.occupancy);
     f(p.planar);
   }

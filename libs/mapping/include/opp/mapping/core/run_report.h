@@ -14,13 +14,14 @@ namespace opp::mapping {
 struct SessionReport {
   std::string path;
   std::uintmax_t bytes = 0;
-  std::string sha256;           ///< of the file, hexadecimal
-  std::size_t frames_read = 0;  ///< 3D observations delivered by the reader
-  std::size_t frames_used = 0;  ///< localized; each has a line in trajectory.tum
-  std::size_t frames_lost = 0;  ///< read, but not localized
+  std::string sha256;            ///< of the file, hexadecimal
+  std::size_t frames_read = 0;   ///< 3D observations delivered by the reader
+  std::size_t frames_used = 0;   ///< localized in the map; each has a line in trajectory.tum
+  std::size_t frames_apart = 0;  ///< localized in a part that nothing proved to belong to the map
+  std::size_t frames_lost = 0;   ///< read, but not localized
   std::size_t keyframes = 0;
-  double path_length = 0.0;  ///< of the localized frames [m]
-  std::size_t loop_closures = 0;
+  double path_length = 0.0;       ///< of the localized frames [m]
+  std::size_t loop_closures = 0;  ///< loops and joins in which a keyframe of it was recognized
 };
 
 /// What a run did: the contents of run.json.

@@ -12,7 +12,8 @@ namespace opp::mapping {
 /// What mapping keeps of one scan: samples and primitives; raw points are gone.
 struct ScanFeatures {
   double timestamp = 0.0;      ///< Unix time [s]
-  std::size_t scan_index = 0;  ///< position among the 3D observations of the rawlog
+  int session = 0;             ///< which rawlog of the run it is from, in the order of mapping
+  std::size_t scan_index = 0;  ///< position among the 3D observations of its rawlog
   OrientedCloud cloud_in_body;
   Primitives primitives_in_body;  ///< labels refer to the samples of cloud_in_body
 };

@@ -12,8 +12,8 @@ namespace opp::mapping {
 
 /// Makes a registered scan a keyframe: its planes become observations of the landmarks that `match`
 /// associated them with or new landmarks, its corners likewise (a corner is known by its three
-/// planes), its right angles orthogonality factors, and what its loose points fix a relative pose
-/// to the keyframe before. Returns the keyframe's id.
+/// planes), its right angles and parallel planes factors, and what its loose points fix a relative
+/// pose to the keyframe before. Returns the keyframe's id.
 int insertKeyframe(ScanFeatures features, const MatchResult& match, const SensorModel& sensor,
                    MapState& map);
 

@@ -51,9 +51,9 @@ class Tracker {
   TrackResult track(const ScanFeatures& scan,
                     const std::optional<Eigen::Isometry3d>& odom_from_body, const MapState& map);
 
-  /// Rebuilds what scans are registered against from the keyframes that look where the newest one
-  /// does. To be called after keyframes or landmarks changed. O(samples of local keyframes).
-  void setLocalMap(const MapState& map);
+  /// Scans are registered against this from now on (see `localMapOf`). To be called after keyframes
+  /// or landmarks changed.
+  void setLocalMap(LocalMap local_map) { local_map_ = std::move(local_map); }
 
   /// The map moved and took the last localized pose to `last_pose`.
   void correct(const Eigen::Isometry3d& last_pose) { motion_.correct(last_pose); }
@@ -68,9 +68,5 @@ class Tracker {
   MotionModel motion_;
   std::optional<LocalMap> local_map_;
 };
-
-/// Ids, ascending, of at most `count` keyframes whose samples lie nearest to those of the newest
-/// (by their means: tells nearness of views for cameras and lidars alike). O(all samples).
-std::vector<int> localKeyframes(const std::vector<Keyframe>& keyframes, std::size_t count);
 
 }  // namespace opp::mapping

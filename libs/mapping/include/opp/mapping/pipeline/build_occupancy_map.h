@@ -13,15 +13,14 @@
 
 namespace opp::mapping {
 
-/// Builds the OctoMap of a rawlog's scans at their final poses by reading the rawlog once more, so
+/// Adds a rawlog's scans at their final poses to an OctoMap by reading the rawlog once more, so
 /// that no raw points need to be kept while mapping. Scans without a pose are left out. \param
 /// map_from_body poses by Scan::index. \param range_limits returns outside are no surfaces and are
 /// left out. \param threads ≤ 0: all cores; no influence on the result. \param progress see
 /// ProgressCallback.
-OccupancyMap buildOccupancyMap(const std::filesystem::path& rawlog, const RawlogOptions& selection,
-                               const std::map<std::size_t, Eigen::Isometry3d>& map_from_body,
-                               const SensorModel& range_limits, const OccupancyParams& params,
-                               int threads,
-                               const std::function<void(double, std::size_t)>& progress);
+void insertRawlog(const std::filesystem::path& rawlog, const RawlogOptions& selection,
+                  const std::map<std::size_t, Eigen::Isometry3d>& map_from_body,
+                  const SensorModel& range_limits, int threads,
+                  const std::function<void(double, std::size_t)>& progress, OccupancyMap& map);
 
 }  // namespace opp::mapping

@@ -23,11 +23,15 @@ struct MapRawlogOptions {
   int threads = 0;           ///< <= 0: all cores
 };
 
-/// Feeds all wanted scans of a rawlog to a mapper and finishes it. Damage of the file and lost
-/// scans become warnings of the report; what was read before is kept. \throws std::runtime_error if
-/// the rawlog cannot be read or holds no 3D observation that is wanted.
+/// Feeds all wanted scans of a rawlog to a mapper as its next session. Damage of the file becomes a
+/// warning of the report; what was read before is kept. \throws std::runtime_error if the rawlog
+/// cannot be read or holds no 3D observation that is wanted.
 void mapRawlog(const std::filesystem::path& rawlog, const MapRawlogOptions& options,
                const PrimitiveParams& params, const ProgressCallback& progress, Mapper& mapper,
                RunReport& report);
+
+/// Finishes the mapper and completes the report: what became of each session's scans, and a warning
+/// for each that is not wholly in the map.
+void finishMapping(Mapper& mapper, RunReport& report);
 
 }  // namespace opp::mapping

@@ -6,6 +6,8 @@
 #include "opp/mapping/core/mapper_params.h"
 #include "opp/mapping/core/trajectory.h"
 #include "opp/mapping/frontend/tracker.h"
+#include "opp/mapping/loop/close_loops.h"
+#include "opp/mapping/loop/map_joiner.h"
 
 #include <map>
 #include <optional>
@@ -21,49 +23,60 @@ struct FrameResult {
   double rms = 0.0;      ///< [m]
 };
 
-/// Builds a map from scans in the order of time: prediction, registration against the local map,
-/// keyframes, landmarks, optimization. The map's frame is the body frame of the first scan, unless
-/// `setInitialPose` says otherwise. Deterministic.
+/// Builds maps from scans in the order of time: prediction, registration against the local map,
+/// keyframes, landmarks, optimization, loop closure.
+///
+/// A session and a body that is lost begin a new part, which joins an older one once several
+/// keyframes prove where they are (MapJoiner); what is never proven stays a map of its own. The
+/// frame of a part is the body frame of its first scan, unless `setInitialPose` says otherwise.
+/// Deterministic.
 class Mapper {
  public:
   explicit Mapper(const MapperParams& params);
 
-  /// Pose of the first scan; to be called before the first `add`.
+  /// The next scan continues nothing that came before: another rawlog.
+  void startSession() { continues_ = false; }
+  /// Pose of the very first scan; to be called before the first `add`.
   void setInitialPose(const Eigen::Isometry3d& map_from_body) { initial_pose_ = map_from_body; }
 
   /// Takes the next scan. `odom_from_body`: the odometry's pose at its time, if the rawlog has any.
   /// A scan without samples is not localized.
   FrameResult add(ScanFeatures scan, const std::optional<Eigen::Isometry3d>& odom_from_body);
 
-  /// Optimizes the whole map; to be called after the last scan.
+  /// Looks once more for proof that parts belong together, gives up those that are too small, and
+  /// optimizes each as a whole; to be called after the last scan.
   void finish();
 
-  const MapState& map() const { return map_; }
-  /// Poses of all localized scans, with all that was learned after them.
-  Trajectory trajectory() const;
-  /// The same poses by ScanFeatures::scan_index.
-  std::map<std::size_t, Eigen::Isometry3d> poses() const;
+  /// The parts that stayed apart, after `finish` those with most scans first; empty before the
+  /// first scan.
+  const std::vector<MapPart>& parts() const { return parts_; }
+  /// The part with most scans, after `finish`; an empty map if there is none.
+  const MapState& map() const;
 
  private:
-  /// A localized scan follows the keyframe that was the newest when it came.
-  struct Follower {
-    double timestamp;
-    std::size_t scan_index;
-    int keyframe;
-    Eigen::Isometry3d keyframe_from_body;
-  };
-
-  FrameResult start(ScanFeatures scan, const std::optional<Eigen::Isometry3d>& odom_from_body);
+  MapState& active() { return parts_.back().map; }
+  FrameResult begin(ScanFeatures scan, const std::optional<Eigen::Isometry3d>& odom_from_body);
   void addKeyframe(ScanFeatures scan, const MatchResult& match);
-  void follow(double timestamp, std::size_t scan_index, const Eigen::Isometry3d& map_from_body);
-  Eigen::Isometry3d poseOf(const Follower& follower) const;
-  void optimize(int first_free);
+  void follow(const ScanFeatures& scan, const Eigen::Isometry3d& map_from_body);
+  std::vector<int> localKeyframes(const MapState& map) const;
 
   MapperParams params_;
   Eigen::Isometry3d initial_pose_ = Eigen::Isometry3d::Identity();
-  MapState map_;
   Tracker tracker_;
-  std::vector<Follower> followers_;
+  LoopCloser loop_closer_;
+  MapJoiner joiner_;
+  std::vector<MapPart> parts_;  ///< the last one is being built
+  std::vector<int> local_;      ///< keyframes that scans are registered against
+  MapState empty_;
+  bool continues_ = false;
+  int lost_in_a_row_ = 0;
+  int next_part_ = 0;
 };
+
+/// Poses of all localized scans, in the order of time, with all that was learned after them.
+Trajectory trajectoryOf(const MapState& map);
+
+/// The same poses of one session, by ScanFeatures::scan_index.
+std::map<std::size_t, Eigen::Isometry3d> posesOf(const MapState& map, int session);
 
 }  // namespace opp::mapping

@@ -1,0 +1,50 @@
+// SPDX-FileCopyrightText: 2026 The opp-mapping authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "opp/mapping/core/se3.h"
+#include "opp/mapping/loop/loop_params.h"
+
+#include <Eigen/Geometry>
+
+#include <vector>
+
+namespace opp::mapping {
+
+/// One keyframe's claim to stand at a place that another keyframe saw.
+struct PlaceClaim {
+  int keyframe_a = 0;
+  int keyframe_b = 0;
+  Eigen::Isometry3d keyframe_a_from_b = Eigen::Isometry3d::Identity();  ///< as measured
+  Matrix6d information = Matrix6d::Zero();                              ///< of it, see PlaceMatch
+  /// What follows for the frames in which the poses of a and b are given: two maps, or a map before
+  /// and after it drifted.
+  Eigen::Isometry3d map_a_from_map_b = Eigen::Isometry3d::Identity();
+  Eigen::Vector3d place_in_map_b = Eigen::Vector3d::Zero();  ///< where the claim was made [m]
+};
+
+/// Claims about the same two frames, waiting for enough of them to agree. A single scan can fit at
+/// a wrong place; different keyframes that were tracked apart rarely fit at wrong places that
+/// agree.
+class ClaimPool {
+ public:
+  explicit ClaimPool(const LoopParams& params) : params_(params) {}
+
+  void add(const PlaceClaim& claim) { claims_.push_back(claim); }
+  /// Drops claims of keyframes b before `first`.
+  void forgetBefore(int first);
+  void clear() { claims_.clear(); }
+  bool empty() const { return claims_.empty(); }
+
+  /// The claims of the pose that most different keyframes b agree on, if these are at least
+  /// `confirmations` and `rival_ratio` times as many as claim anything else; else empty: not
+  /// proven, or ambiguous. In order of arrival. O(claims²).
+  std::vector<PlaceClaim> agreed() const;
+
+ private:
+  bool agree(const PlaceClaim& x, const PlaceClaim& y) const;
+  LoopParams params_;
+  std::vector<PlaceClaim> claims_;
+};
+
+}  // namespace opp::mapping

@@ -1,0 +1,190 @@
+// SPDX-FileCopyrightText: 2026 The opp-mapping authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "opp/mapping/loop/map_joiner.h"
+
+#include "opp/mapping/backend/settle_map.h"
+#include "opp/mapping/loop/join_maps.h"
+#include "opp/mapping/loop/match_place.h"
+
+#include "registration/scan_model.h"
+#include "registration/verify_pose.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace opp::mapping {
+namespace {
+
+using Index = std::size_t;
+
+/// Keyframes of a part that are compared with the other before a join.
+constexpr int kComparedKeyframes = 12;
+/// Keyframes of a part that look for their places in the end, about.
+constexpr int kClaimants = 40;
+
+/// Whether the body can have got from the one part to the other: within a session it moves at most
+/// at some times its typical speed.
+bool reachable(const MapState& a, const MapState& b, const Eigen::Isometry3d& a_from_b,
+               const MapperParams& params) {
+  constexpr double kSigmas = 3.0;
+  for (const LocalizedScan& first : b.scans) {
+    const LocalizedScan* last = nullptr;
+    for (const LocalizedScan& scan : a.scans) {
+      if (scan.session == first.session && scan.timestamp <= first.timestamp) last = &scan;
+    }
+    if (last == nullptr) continue;
+    const double seconds = first.timestamp - last->timestamp;
+    const Eigen::Vector3d was =
+        a.keyframes[Index(last->keyframe)].map_from_body * last->keyframe_from_body.translation();
+    const Eigen::Vector3d is = a_from_b * (b.keyframes[Index(first.keyframe)].map_from_body *
+                                           first.keyframe_from_body.translation());
+    return (is - was).norm() <=
+           params.loop.search_distance + kSigmas * params.frontend.speed * seconds;
+  }
+  return true;
+}
+
+/// The keyframe of `map` whose view is nearest to `view`; −1 if none is within `reach`.
+int nearestView(const MapState& map, const Eigen::Vector3d& view, double reach) {
+  int nearest = -1;
+  for (Index k = 0; k < map.keyframes.size(); ++k) {
+    const double distance = (map.keyframes[k].viewCentre() - view).norm();
+    if (distance >= reach) continue;
+    reach = distance;
+    nearest = static_cast<int>(k);
+  }
+  return nearest;
+}
+
+}  // namespace
+
+double conflictOf(const MapState& a, const MapState& b, const Eigen::Isometry3d& a_from_b,
+                  int keyframes, const MapperParams& params) {
+  const Index step = std::max<Index>(1, b.keyframes.size() / Index(keyframes));
+  int agreeing = 0, conflicting = 0;
+  for (Index k = 0; k < b.keyframes.size(); k += step) {
+    const Keyframe& of_b = b.keyframes[k];
+    const int near = nearestView(a, a_from_b * of_b.viewCentre(), params.loop.search_distance);
+    if (near < 0) continue;
+    const Keyframe& of_a = a.keyframes[Index(near)];
+    const ScanModel target(of_a.features, params.global_alignment);
+    const ScanModel source(of_b.features, params.global_alignment);
+    const Eigen::Isometry3d target_from_source =
+        of_a.map_from_body.inverse() * a_from_b * of_b.map_from_body;
+    const Verification seen = verifyPose(target, source, target_from_source,
+                                         params.loop.agree_translation, params.global_alignment);
+    for (const Agreement* side : {&seen.of_source, &seen.of_target}) {
+      agreeing += side->agreeing;
+      conflicting += side->conflicting;
+    }
+  }
+  const int both = agreeing + conflicting;
+  return both == 0 ? 1.0 : static_cast<double>(conflicting) / both;
+}
+
+ClaimPool& MapJoiner::pool(int part_a, int part_b) {
+  return pools_.try_emplace({part_a, part_b}, params_.loop).first->second;
+}
+
+std::vector<MapJoiner::Candidate> MapJoiner::candidates(const std::vector<MapPart>& parts,
+                                                        Index claimant,
+                                                        const Primitives& primitives) const {
+  std::vector<Candidate> ranked;
+  for (Index p = 0; p < parts.size(); ++p) {
+    if (parts[p].id >= parts[claimant].id) continue;
+    const std::vector<double> likeness = parts[p].index.likeness(primitives);
+    for (Index k = 0; k < likeness.size(); ++k) {
+      if (likeness[k] > 0.0) ranked.push_back({likeness[k], p, static_cast<int>(k)});
+    }
+  }
+  std::stable_sort(ranked.begin(), ranked.end(),
+                   [](const Candidate& x, const Candidate& y) { return x.likeness > y.likeness; });
+  std::vector<Candidate> chosen;
+  for (const Candidate& c : ranked) {
+    if (chosen.size() == Index(params_.loop.max_candidates)) break;
+    const Eigen::Vector3d view = parts[c.part].map.keyframes[Index(c.keyframe)].viewCentre();
+    const bool new_place = std::all_of(chosen.begin(), chosen.end(), [&](const Candidate& other) {
+      const Keyframe& k = parts[other.part].map.keyframes[Index(other.keyframe)];
+      return other.part != c.part ||
+             (k.viewCentre() - view).norm() > 0.5 * params_.loop.search_distance;
+    });
+    if (new_place) chosen.push_back(c);
+  }
+  return chosen;
+}
+
+void MapJoiner::claim(const std::vector<MapPart>& parts, Index claimant, int keyframe) {
+  const MapPart& own = parts[claimant];
+  const Keyframe& scan = own.map.keyframes[Index(keyframe)];
+  for (const Candidate& c : candidates(parts, claimant, scan.features.primitives_in_body)) {
+    const MapPart& other = parts[c.part];
+    const auto match = matchPlace(other.map, c.keyframe, scan.features, std::nullopt, params_);
+    if (!match) continue;
+    PlaceClaim claim;
+    claim.keyframe_a = match->keyframe;
+    claim.keyframe_b = keyframe;
+    claim.keyframe_a_from_b = match->keyframe_from_body;
+    claim.information = match->information;
+    claim.map_a_from_map_b = other.map.keyframes[Index(match->keyframe)].map_from_body *
+                             match->keyframe_from_body * scan.map_from_body.inverse();
+    claim.place_in_map_b = scan.viewCentre();
+    if (reachable(other.map, own.map, claim.map_a_from_map_b, params_))
+      pool(other.id, own.id).add(claim);
+  }
+}
+
+bool MapJoiner::joinAgreed(std::vector<MapPart>& parts, Index claimant) {
+  for (Index p = 0; p < parts.size(); ++p) {
+    MapPart &host = parts[p], &guest = parts[claimant];
+    if (host.id >= guest.id) continue;
+    const std::vector<PlaceClaim> claims = pool(host.id, guest.id).agreed();
+    if (claims.empty()) continue;
+    const Eigen::Isometry3d host_from_guest = claims.front().map_a_from_map_b;
+    if (conflictOf(host.map, guest.map, host_from_guest, kComparedKeyframes, params_) >
+        params_.global_alignment.max_conflict) {
+      continue;
+    }
+    const int first = static_cast<int>(host.map.keyframes.size());
+    appendMap(host_from_guest, std::move(guest.map), host.map);
+    for (const PlaceClaim& claim : claims) {
+      const int keyframe_b = claim.keyframe_b + first;
+      host.map.factors.relative_poses.push_back(
+          {claim.keyframe_a, keyframe_b, claim.keyframe_a_from_b, claim.information, true});
+      host.map.links.push_back(
+          {claim.keyframe_a, keyframe_b, std::pow(params_.loop.step_sigma, 2)});
+    }
+    ++host.map.loop_closures;
+    settleMap(host.map, 1, params_);
+    for (Index k = Index(first); k < host.map.keyframes.size(); ++k)
+      host.index.add(host.map.keyframes[k].features.primitives_in_body);
+    MapPart joined = std::move(host);
+    parts.erase(parts.begin() + static_cast<std::ptrdiff_t>(std::max(p, claimant)));
+    parts.erase(parts.begin() + static_cast<std::ptrdiff_t>(std::min(p, claimant)));
+    parts.push_back(std::move(joined));
+    return true;
+  }
+  return false;
+}
+
+bool MapJoiner::joinNewest(std::vector<MapPart>& parts) {
+  if (parts.size() < 2 || !params_.loop.join_maps) return false;
+  const Index newest = parts.size() - 1;
+  claim(parts, newest, static_cast<int>(parts[newest].map.keyframes.size()) - 1);
+  return joinAgreed(parts, newest);
+}
+
+void MapJoiner::joinAll(std::vector<MapPart>& parts) {
+  bool joined = params_.loop.join_maps && parts.size() > 1;
+  while (joined) {
+    joined = false;
+    pools_.clear();
+    for (Index p = 0; p < parts.size() && !joined; ++p) {
+      const int keyframes = static_cast<int>(parts[p].map.keyframes.size());
+      const int step = 1 + keyframes / kClaimants;
+      for (int k = 0; k < keyframes; k += step) claim(parts, p, k);
+      joined = joinAgreed(parts, p);
+    }
+  }
+}
+
+}  // namespace opp::mapping

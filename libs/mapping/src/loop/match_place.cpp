@@ -1,0 +1,60 @@
+// SPDX-FileCopyrightText: 2026 The opp-mapping authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "opp/mapping/loop/match_place.h"
+
+#include "opp/mapping/frontend/build_local_map.h"
+#include "opp/mapping/loop/keyframe_graph.h"
+#include "opp/mapping/registration/align_globally.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace opp::mapping {
+namespace {
+
+const Keyframe& keyframeOf(const MapState& map, int id) {
+  return map.keyframes[static_cast<std::size_t>(id)];
+}
+
+/// Largest variance of a keyframe that is matched as part of a place.
+double connectedVariance(const MapState& map, int keyframe, const MapperParams& params) {
+  const double voxel = params.registration.surfel_size_ratio *
+                       keyframeOf(map, keyframe).features.cloud_in_body.spacing;
+  return std::pow(params.loop.connected_ratio * voxel, 2);
+}
+
+PlaceMatch describe(const MapState& map, int keyframe, const MatchResult& match) {
+  const Eigen::Isometry3d& map_from_keyframe = keyframeOf(map, keyframe).map_from_body;
+  Matrix6d map_from_local = Matrix6d::Zero();
+  map_from_local.topLeftCorner<3, 3>() = map_from_keyframe.linear();
+  map_from_local.bottomRightCorner<3, 3>() = map_from_keyframe.linear();
+  return {keyframe, normalized(map_from_keyframe.inverse() * match.map_from_body),
+          map_from_local.transpose() * match.point_information * map_from_local, match.overlap};
+}
+
+}  // namespace
+
+std::optional<PlaceMatch> matchPlace(const MapState& map, int keyframe, const ScanFeatures& scan,
+                                     const std::optional<PosePrior>& expected,
+                                     const MapperParams& params) {
+  const std::vector<int> place =
+      nearestViews(map, keyframe, relativeVariances(map, keyframe),
+                   connectedVariance(map, keyframe, params), params.loop.place_keyframes);
+  const LocalMap local = localMapOf(map, place, params);
+  if (expected) {
+    const MatchResult match = matchScan(scan, local, *expected, params.registration);
+    if (match.overlap >= params.loop.min_overlap) return describe(map, keyframe, match);
+  }
+  const GlobalAlignment alignment =
+      alignGlobally(keyframeOf(map, keyframe).features, scan, params.global_alignment);
+  if (alignment.outcome != AlignmentOutcome::kAligned) return std::nullopt;
+  // A start without weight: the alignment saw the same scan, so its information must not count
+  // twice.
+  PosePrior start;
+  start.map_from_body = keyframeOf(map, keyframe).map_from_body * alignment.target_from_source;
+  const MatchResult match = matchScan(scan, local, start, params.registration);
+  if (match.overlap < params.loop.min_overlap) return std::nullopt;
+  return describe(map, keyframe, match);
+}
+
+}  // namespace opp::mapping

@@ -1,0 +1,72 @@
+// SPDX-FileCopyrightText: 2026 The opp-mapping authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "opp/mapping/loop/claim_pool.h"
+
+#include "support/random.h"
+
+#include <gtest/gtest.h>
+
+namespace opp::mapping {
+namespace {
+
+PlaceClaim claimOf(int keyframe_b, const Eigen::Isometry3d& a_from_b) {
+  PlaceClaim claim;
+  claim.keyframe_b = keyframe_b;
+  claim.map_a_from_map_b = a_from_b;
+  claim.place_in_map_b = Eigen::Vector3d(5.0, 0.0, 0.0);
+  return claim;
+}
+
+Eigen::Isometry3d shifted(const Eigen::Isometry3d& pose, double x) {
+  return Eigen::Translation3d(x, 0.0, 0.0) * pose;
+}
+
+TEST(ClaimPool, BelievesWhatSeveralKeyframesSay) {
+  test::Random random(1);
+  for (int trial = 0; trial < 50; ++trial) {
+    ClaimPool pool{LoopParams()};
+    const Eigen::Isometry3d pose = random.pose(3.0);
+    pool.add(claimOf(7, pose));
+    EXPECT_TRUE(pool.agreed().empty()) << "one keyframe proves nothing";
+    pool.add(claimOf(7, pose));
+    EXPECT_TRUE(pool.agreed().empty()) << "the same keyframe again proves nothing";
+    pool.add(claimOf(8, shifted(pose, 0.05)));
+    EXPECT_EQ(pool.agreed().size(), 3U);
+  }
+}
+
+TEST(ClaimPool, IsSilentWhereKeyframesContradictEachOther) {
+  ClaimPool pool{LoopParams()};
+  const Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+  for (const int keyframe : {1, 2}) {
+    pool.add(claimOf(keyframe, pose));
+    pool.add(claimOf(keyframe, shifted(pose, 4.0)));  // the next room of the corridor
+  }
+  EXPECT_TRUE(pool.agreed().empty());
+  pool.add(claimOf(3, pose));
+  EXPECT_TRUE(pool.agreed().empty()) << "three against two is not twice as many";
+  pool.add(claimOf(4, pose));
+  EXPECT_EQ(pool.agreed().size(), 4U);
+}
+
+TEST(ClaimPool, ComparesPosesWhereTheClaimWasMade) {
+  // 1.5° are within the tolerance of the rotation but move a place 5 m away by 13 cm.
+  const Eigen::Isometry3d turn(Eigen::AngleAxisd(degToRad(1.5), Eigen::Vector3d::UnitZ()));
+  ClaimPool pool{LoopParams()};
+  pool.add(claimOf(1, Eigen::Isometry3d::Identity()));
+  pool.add(claimOf(2, turn));
+  EXPECT_TRUE(pool.agreed().empty());
+}
+
+TEST(ClaimPool, ForgetsClaimsOfOldKeyframes) {
+  ClaimPool pool{LoopParams()};
+  pool.add(claimOf(1, Eigen::Isometry3d::Identity()));
+  pool.forgetBefore(2);
+  EXPECT_TRUE(pool.empty());
+  pool.add(claimOf(2, Eigen::Isometry3d::Identity()));
+  pool.forgetBefore(2);
+  EXPECT_FALSE(pool.empty());
+}
+
+}  // namespace
+}  // namespace opp::mapping

@@ -1,0 +1,99 @@
+// SPDX-FileCopyrightText: 2026 The opp-mapping authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "opp/mapping/loop/map_joiner.h"
+
+#include "opp/mapping/core/se3.h"
+#include "opp/mapping/pipeline/mapper.h"
+
+#include "support/random.h"
+#include "support/synthetic_features.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace opp::mapping {
+namespace {
+
+/// A body that walks an arc and looks around; `from` is the step it begins with.
+Eigen::Isometry3d poseAt(int step) {
+  const double phase = 0.12 * step;
+  Eigen::Isometry3d pose(Eigen::AngleAxisd(phase, Eigen::Vector3d::UnitZ()));
+  pose.translation() = Eigen::Vector3d(0.4 * std::cos(phase), 0.4 * std::sin(phase), 1.3);
+  return pose;
+}
+
+ScanFeatures scanAt(const test::Rectangles& scene, int step) {
+  test::SyntheticOptions options;
+  options.spacing = 0.08;
+  options.sigma = 0.003;
+  options.seed = static_cast<std::uint64_t>(step);
+  ScanFeatures scan = test::trueFeatures(
+      test::sampleScene(scene, poseAt(step).translation(), poseAt(step).inverse(), options));
+  scan.timestamp = 0.1 * step;
+  scan.scan_index = static_cast<std::size_t>(step);
+  return scan;
+}
+
+/// Two sessions of `steps` scans each, in one scene or two.
+Mapper mapTwice(const test::Rectangles& first, const test::Rectangles& second, int steps) {
+  Mapper mapper{MapperParams()};
+  mapper.setInitialPose(poseAt(0));
+  for (int session = 0; session < 2; ++session) {
+    mapper.startSession();
+    for (int step = 0; step < steps; ++step) {
+      ScanFeatures scan = scanAt(session == 0 ? first : second, step + 40 * session);
+      scan.session = session;
+      mapper.add(std::move(scan), std::nullopt);
+    }
+  }
+  mapper.finish();
+  return mapper;
+}
+
+TEST(MapJoiner, JoinsTwoSessionsOfOneRoomWithoutAGuess) {
+  int joined = 0;
+  for (std::uint64_t room = 1; room <= 5; ++room) {
+    const Mapper mapper = mapTwice(test::furnishedRoom(room), test::furnishedRoom(room), 16);
+    if (mapper.parts().size() != 1) continue;  // nothing false is claimed
+    ++joined;
+    EXPECT_GE(mapper.map().loop_closures, 1U);
+    EXPECT_EQ(mapper.map().scans.size(), 32U);
+    for (const auto& [index, pose] : posesOf(mapper.map(), 1)) {
+      EXPECT_LT(difference(poseAt(static_cast<int>(index)), pose).norm(), 5e-3)
+          << "room " << room << " scan " << index;
+    }
+  }
+  EXPECT_GE(joined, 4);
+}
+
+TEST(MapJoiner, LeavesDifferentRoomsApart) {
+  for (std::uint64_t room = 1; room <= 5; ++room) {
+    const Mapper mapper = mapTwice(test::furnishedRoom(room), test::furnishedRoom(room + 20), 8);
+    ASSERT_EQ(mapper.parts().size(), 2U) << "room " << room;
+    EXPECT_EQ(mapper.parts()[0].map.scans.size(), 8U);
+    EXPECT_EQ(mapper.parts()[1].map.scans.size(), 8U);
+  }
+}
+
+TEST(MapJoiner, ClaimsNothingInARoomThatLooksTheSameFromTwoSides) {
+  const test::Rectangles room = test::roomSides({-2.0, -1.5, 0.0}, {2.0, 1.5, 2.5});
+  const Mapper mapper = mapTwice(room, room, 8);
+  EXPECT_EQ(mapper.parts().size(), 2U);
+}
+
+TEST(ConflictOf, IsSmallForTheTruePoseAndLargeForAWrongOne) {
+  for (std::uint64_t room = 1; room <= 5; ++room) {
+    const Mapper mapper = mapTwice(test::furnishedRoom(room), test::furnishedRoom(room + 20), 4);
+    const MapState& map = mapper.parts()[0].map;
+    const MapperParams params;
+    EXPECT_LT(conflictOf(map, map, Eigen::Isometry3d::Identity(), 10, params), 0.02);
+    const Eigen::Isometry3d aside(Eigen::Translation3d(0.8, 0.5, 0.0));
+    EXPECT_GT(conflictOf(map, map, aside, 10, params), 0.1);
+    const Eigen::Isometry3d away(Eigen::Translation3d(80.0, 0.0, 0.0));
+    EXPECT_EQ(conflictOf(map, map, away, 10, params), 1.0) << "nothing in common proves nothing";
+  }
+}
+
+}  // namespace
+}  // namespace opp::mapping

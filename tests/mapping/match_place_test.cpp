@@ -1,0 +1,93 @@
+// SPDX-FileCopyrightText: 2026 The opp-mapping authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "opp/mapping/loop/match_place.h"
+
+#include "opp/mapping/core/se3.h"
+#include "opp/mapping/frontend/insert_keyframe.h"
+
+#include "support/random.h"
+#include "support/synthetic_features.h"
+
+#include <gtest/gtest.h>
+
+namespace opp::mapping {
+namespace {
+
+ScanFeatures scanOf(std::uint64_t room, const Eigen::Isometry3d& scene_from_body,
+                    std::uint64_t seed) {
+  test::SyntheticOptions options;
+  options.spacing = 0.08;
+  options.sigma = 0.003;
+  options.seed = seed;
+  return test::trueFeatures(test::sampleScene(test::furnishedRoom(room),
+                                              scene_from_body.translation(),
+                                              scene_from_body.inverse(), options));
+}
+
+Eigen::Isometry3d standing(double x, double y, double yaw) {
+  Eigen::Isometry3d pose(Eigen::AngleAxisd(yaw, Eigen::Vector3d::UnitZ()));
+  pose.translation() = Eigen::Vector3d(x, y, 1.3);
+  return pose;
+}
+
+MapState mapOf(std::uint64_t room, const Eigen::Isometry3d& pose) {
+  MapState map;
+  MatchResult match;
+  match.map_from_body = pose;
+  insertKeyframe(scanOf(room, pose, 1), match, SensorModel(), map);
+  return map;
+}
+
+double error(const PlaceMatch& match, const Eigen::Isometry3d& keyframe_from_body) {
+  return difference(keyframe_from_body, match.keyframe_from_body).norm();
+}
+
+TEST(MatchPlace, FindsTheScanWithoutAGuess) {
+  test::Random random(1);
+  int found = 0;
+  for (std::uint64_t room = 1; room <= 10; ++room) {
+    const Eigen::Isometry3d at = standing(0.0, 0.0, 0.0);
+    const Eigen::Isometry3d body =
+        standing(random.uniform(-0.4, 0.4), random.uniform(-0.4, 0.4), random.uniform(-3.0, 3.0));
+    const auto match =
+        matchPlace(mapOf(room, at), 0, scanOf(room, body, 2), std::nullopt, MapperParams());
+    if (!match) continue;  // some of these rooms are nearly symmetric
+    ++found;
+    EXPECT_LT(error(*match, at.inverse() * body), 5e-3) << "room " << room;
+    EXPECT_GT(match->overlap, 0.5);
+    EXPECT_GT(match->information(3, 3), 0.0);
+  }
+  EXPECT_GE(found, 8);
+}
+
+TEST(MatchPlace, UsesAnExpectedPose) {
+  for (std::uint64_t room = 1; room <= 10; ++room) {
+    const Eigen::Isometry3d at = standing(0.0, 0.0, 0.0), body = standing(0.3, -0.2, 0.4);
+    PosePrior drifted;
+    Vector6d error_of_guess;
+    error_of_guess << 0.01, -0.01, 0.02, 0.05, -0.08, 0.03;
+    drifted.map_from_body = retract(body, error_of_guess);
+    drifted.information = 100.0 * Matrix6d::Identity();
+    const auto match =
+        matchPlace(mapOf(room, at), 0, scanOf(room, body, 2), drifted, MapperParams());
+    ASSERT_TRUE(match) << "room " << room;
+    EXPECT_LT(error(*match, at.inverse() * body), 5e-3) << "room " << room;
+  }
+}
+
+TEST(MatchPlace, FindsNothingInAnotherRoom) {
+  for (std::uint64_t room = 1; room <= 10; ++room) {
+    const auto match =
+        matchPlace(mapOf(room, standing(0.0, 0.0, 0.0)), 0,
+                   scanOf(room + 20, standing(0.3, 0.2, 0.5), 2), std::nullopt, MapperParams());
+    EXPECT_FALSE(match) << "room " << room;
+  }
+}
+
+TEST(MatchPlace, OfAnEmptyScanIsNothing) {
+  EXPECT_FALSE(matchPlace(mapOf(1, standing(0.0, 0.0, 0.0)), 0, ScanFeatures(), std::nullopt,
+                          MapperParams()));
+}
+
+}  // namespace
+}  // namespace opp::mapping
