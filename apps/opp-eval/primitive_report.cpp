@@ -67,8 +67,10 @@ Json toJson(const PrimitiveTally& tally, const std::string& distance_name) {
           {"est", tally.est},
           {"gt_found", tally.gt_found},
           {"est_correct", tally.est_correct},
+          {"est_neutral", tally.est_neutral},
           {"precision", toJson(tally.precision())},
           {"recall", toJson(tally.recall())},
+          {"recall_by_size", toJson(tally.recallBySize())},
           {"angle_rad", mapping::toJson(angles)},
           {"angle_deg", mapping::toJson(angles, kDegreesPerRadian)},
           {distance_name, mapping::toJson(statisticsOf(tally.distances))},
@@ -86,8 +88,9 @@ void printTally(std::ostream& out, const std::string& name, const PrimitiveTally
   std::ostringstream row;
   row << std::left << std::setw(10) << name << std::right << std::setw(9) << tally.gt
       << std::setw(11) << tally.est << std::setw(9) << tally.gt_found << std::setw(9)
-      << tally.est_correct << std::setw(11) << asText(tally.precision()) << std::setw(9)
-      << asText(tally.recall());
+      << tally.est_correct << std::setw(9) << tally.est_neutral << std::setw(11)
+      << asText(tally.precision()) << std::setw(9) << asText(tally.recall()) << std::setw(9)
+      << asText(tally.recallBySize());
   out << row.str() << '\n';
 }
 
@@ -127,7 +130,7 @@ void print(std::ostream& out, const PrimitiveComparison& comparison) {
   out << "Primitives of " << t.maps << " true maps (" << comparison.without_estimate
       << " of them without an estimate; " << comparison.without_truth
       << " estimates without truth left out)\n"
-      << "               true  estimated    found  correct  precision   recall\n";
+      << "               true  estimated    found  correct  neutral  precision   recall  by size\n";
   printTally(out, "planes", t.planes);
   printTally(out, "lines", t.lines);
   printTally(out, "corners", t.corners);

@@ -5,6 +5,7 @@
 #include "opp/mapping/io/tum_trajectory.h"
 #include "opp/mapping/simulation/scene.h"
 
+#include "support/planar_map_schema.h"
 #include "support/run_command.h"
 #include "support/temp_folder.h"
 
@@ -95,6 +96,27 @@ TEST(OppSimulate, StatesTheTruthOfEachFrameInTheBodyFrame) {
         least = std::min(least, (other.plane.coefficients() - in_map.coefficients()).norm());
       }
       EXPECT_LT(least, 1e-6);  // 9 digits of the trajectory's text
+    }
+  }
+}
+
+TEST(OppSimulate, TruthFollowsTheSchemaInEachScene) {
+  for (const auto scene : builtInScenes()) {
+    for (const std::string sensor : {"kinect", "lidar16"}) {
+      const TempFolder folder;
+      const auto result = runApp(
+          "opp-simulate",
+          {"--scene", std::string(scene), "--sensor", sensor, "--frames", "3", "--decimation", "4",
+           "--min-pixels", "100", "--per-frame-gt", "frames", "--quiet", "-o", "a.rawlog"},
+          folder.path());
+      ASSERT_EQ(result.exit_code, 0) << result;
+      std::vector<std::filesystem::path> files{folder / "a.gt.json"};
+      for (const char* name : {"000000", "000001", "000002"}) {
+        files.push_back(folder / (std::string("frames/") + name + ".json"));
+      }
+      EXPECT_GE(readPlanarMap(files[0]).planes.size(), 3U);
+      const auto check = test::validatePlanarMaps(files);
+      EXPECT_EQ(check.exit_code, 0) << scene << ' ' << sensor << ' ' << check;
     }
   }
 }

@@ -88,6 +88,79 @@ TEST(GroundTruth, HoldsOnlyWhatWasSeen) {
   EXPECT_TRUE(map.planes[0].plane.normal().isApprox(-Eigen::Vector3d::UnitX(), 1e-15));
 }
 
+TEST(GroundTruth, WhatTooFewPixelsSawIsKeptApart) {
+  // A floor and a wall that meet at x = 2, the wall behind a screen but for what the slot below
+  // shows.
+  World world;
+  world.addFace({{0, -1, 0}, {2, -1, 0}, {2, 1, 0}, {0, 1, 0}});
+  world.addFace({{2, -1, 0}, {2, -1, 2}, {2, 1, 2}, {2, 1, 0}});
+  world.addFace({{1.9, -1, 0.1}, {1.9, -1, 3}, {1.9, 1, 3}, {1.9, 1, 0.1}});
+  SimulatedFrame frame;
+  frame.map_from_body.translation() << 0.0, 0.0, 1.0;
+  frame.map_from_body.linear() =
+      Eigen::AngleAxisd(0.5, Eigen::Vector3d::UnitY()).toRotationMatrix();
+  frame.data =
+      renderIdeal(RayTracer(world), frame.map_from_body, PinholeCamera().decimated(4), 2e-4);
+  const auto seen = [&](int min_pixels) {
+    GroundTruthParams params;
+    params.min_pixels = min_pixels;
+    GroundTruth truth(world, params);
+    truth.add(frame, Eigen::Isometry3d::Identity());
+    return truth.map();
+  };
+  const PlanarMap all = seen(1);
+  ASSERT_EQ(all.planes.size(), 3U);
+  EXPECT_TRUE(all.barely_seen.planes.empty());
+  ASSERT_EQ(all.lines.size(), 1U);  // the screen does not touch the floor
+  const long wall_pixels = all.planes[1].points;
+  const PlanarMap most = seen(static_cast<int>(wall_pixels) + 1);
+  EXPECT_EQ(most.planes.size(), 2U);
+  EXPECT_TRUE(most.lines.empty());
+  ASSERT_EQ(most.barely_seen.planes.size(), 1U);
+  EXPECT_EQ(most.barely_seen.planes[0].id, 2);
+  EXPECT_EQ(most.barely_seen.planes[0].points, wall_pixels);
+  ASSERT_EQ(most.barely_seen.lines.size(), 1U);
+  const PlanarMapLine& seam = most.barely_seen.lines[0];
+  EXPECT_EQ(seam.planes, (std::array<int, 2>{0, 2}));
+  // All of it, seen or not, and near_gap beyond either end.
+  EXPECT_NEAR((seam.end - seam.start).norm(), 2.1, 1e-9);
+}
+
+TEST(GroundTruth, FacesThatNearlyTouchMayBeTakenForTouching) {
+  for (const double gap : {0.0, 0.02, 0.08}) {
+    World world;
+    world.addFace({{0, -1, 0}, {2.0 - gap, -1, 0}, {2.0 - gap, 1, 0}, {0, 1, 0}});
+    world.addFace({{2, -1, 0}, {2, -1, 2}, {2, 1, 2}, {2, 1, 0}});
+    SimulatedFrame frame;
+    frame.map_from_body.translation().z() = 1.0;
+    frame.map_from_body.linear() =
+        Eigen::AngleAxisd(0.4, Eigen::Vector3d::UnitY()).toRotationMatrix();
+    frame.data = renderIdeal(RayTracer(world), frame.map_from_body, PinholeCamera(), 2e-4);
+    GroundTruth truth(world, {});
+    truth.add(frame, Eigen::Isometry3d::Identity());
+    const PlanarMap map = truth.map();
+    EXPECT_EQ(map.lines.size(), gap == 0.0 ? 1U : 0U) << gap;
+    EXPECT_EQ(map.barely_seen.lines.size(), gap == 0.02 ? 1U : 0U) << gap;
+  }
+}
+
+TEST(GroundTruth, LinesAndTheRestOfTheirSeamAreDisjoint) {
+  for (const auto name : builtInScenes()) {
+    const PlanarMap map = truthOf(std::string(name), SimulatedSensor::kKinect, 3, 4);
+    for (const PlanarMapLine& rest : map.barely_seen.lines) {
+      const Eigen::Vector3d direction = (rest.end - rest.start).normalized();
+      const double length = (rest.end - rest.start).norm();
+      for (const PlanarMapLine& line : map.lines) {
+        if (line.planes != rest.planes) continue;
+        const double a = direction.dot(line.start - rest.start);
+        const double b = direction.dot(line.end - rest.start);
+        EXPECT_TRUE(std::max(a, b) < 1e-9 || std::min(a, b) > length - 1e-9) << name;
+      }
+    }
+    for (const PlanarMapPlane& plane : map.barely_seen.planes) EXPECT_LT(plane.points, 300);
+  }
+}
+
 TEST(GroundTruth, TwoSidesOfAWallAreTwoPlanes) {
   World world;
   world.addFace({{0, -1, -1}, {0, 1, -1}, {0, 1, 1}, {0, -1, 1}});

@@ -36,6 +36,7 @@ PlanarMap randomMap(test::Random& random) {
   map.corners[0].position = random.vector(3.0);
   map.corners[0].orientation = Eigen::Quaterniond(random.rotation());
   map.corners[0].covariance = randomCovariance(random);
+  map.barely_seen = {map.planes, map.lines, map.corners};
   return map;
 }
 
@@ -55,6 +56,9 @@ TEST(MovedPlanarMap, MovesWhatLiesOnAPlaneWithThePlane) {
     EXPECT_TRUE(b.families[0].normal.isApprox(plane.plane.normal(), 1e-12));
     EXPECT_TRUE(b.lines[0].start.isApprox(b_from_a * a.lines[0].start, 1e-12));
     EXPECT_TRUE(b.corners[0].position.isApprox(b_from_a * a.corners[0].position, 1e-12));
+    EXPECT_EQ(b.barely_seen.planes[0].centroid, plane.centroid);
+    EXPECT_EQ(b.barely_seen.lines[0].end, b.lines[0].end);
+    EXPECT_EQ(b.barely_seen.corners[0].position, b.corners[0].position);
   }
 }
 

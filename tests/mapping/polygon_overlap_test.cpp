@@ -6,6 +6,8 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
+
 namespace opp::mapping {
 namespace {
 
@@ -63,6 +65,28 @@ TEST(PolygonOverlap, NarrowSlantedPolygonsAreSampledEnough) {
 TEST(PolygonOverlap, SeveralPolygonsCountTogether) {
   const std::vector<PlanarPolygon> two{rectangle(0, 0, 1, 1), rectangle(3, 0, 4, 1)};
   EXPECT_NEAR(sharedArea(Plane(), two, {rectangle(0.5, 0, 3.5, 1)}), 1.0, kSampling * 2);
+}
+
+TEST(PolygonOverlap, DistanceIsMeasuredInThePlaneFromTheNearestPolygon) {
+  test::Random random(102);
+  for (int k = 0; k < 50; ++k) {
+    const Eigen::Isometry3d map_from_plane = random.pose(10.0);
+    const Plane plane =
+        transformed(map_from_plane, Plane::fromCoefficients(Eigen::Vector3d::UnitZ(), 0.0));
+    std::vector<PlanarPolygon> two{rectangle(0, 0, 2, 2, map_from_plane),
+                                   rectangle(5, 0, 6, 1, map_from_plane)};
+    two[0].holes = {rectangle(0.5, 0.5, 1.5, 1.5, map_from_plane).outer};
+    const auto distance = [&](double x, double y, double z) {
+      return distanceTo(plane, two, map_from_plane * Eigen::Vector3d(x, y, z));
+    };
+    EXPECT_EQ(distance(1.9, 1.9, 3.0), 0.0);
+    EXPECT_EQ(distance(1.0, 1.0, 0.0), 0.0);  // in the hole
+    EXPECT_NEAR(distance(2.5, 1.0, -1.0), 0.5, 1e-9);
+    EXPECT_NEAR(distance(4.6, 0.5, 0.0), 0.4, 1e-9);
+    EXPECT_NEAR(distance(-3.0, -4.0, 0.0), 5.0, 1e-9);
+  }
+  EXPECT_EQ(distanceTo(Plane(), {}, {0, 0, 0}), std::numeric_limits<double>::infinity());
+  EXPECT_EQ(distanceTo(Plane(), {rectangle(0, 0, 0, 0)}, {3, 4, 9}), 5.0);
 }
 
 TEST(PolygonOverlap, DegeneratePolygonsShareNothing) {

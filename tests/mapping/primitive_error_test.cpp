@@ -191,6 +191,108 @@ TEST(ComparePrimitives, PlanesWithoutPolygonsAreComparedByGeometry) {
   EXPECT_EQ(comparePrimitives(est, gt).planes.recall(), 1.0);
 }
 
+TEST(ComparePrimitives, PlanesWithoutPolygonsMustLieWhereTheTrueOneIs) {
+  PlanarMap gt;
+  gt.planes.push_back(square(0, {0, 0, 0}, {0, 0, 1}, 1.0));
+  PlanarMap est = gt;
+  est.planes[0].polygons.clear();
+  for (const double x : {-1.04, 0.3, 1.04}) {
+    est.planes[0].centroid = {x, 0.5, 0.02};
+    EXPECT_EQ(comparePrimitives(gt, est).planes.precision(), 1.0) << x;
+  }
+  est.planes[0].centroid = {1.06, 0.5, 0.02};  // farther than max_offset
+  EXPECT_EQ(comparePrimitives(gt, est).planes.precision(), 0.0);
+}
+
+TEST(ComparePrimitives, FindingWhatWasBarelySeenIsNeitherRightNorWrong) {
+  PlanarMap gt = room();
+  // All but the floor and what it takes part in was barely seen.
+  const auto move_out = [](auto& from, auto& to, const auto& stays) {
+    for (const auto& element : from) {
+      if (!stays(element)) to.push_back(element);
+    }
+    from.erase(std::remove_if(from.begin(), from.end(), [&](const auto& e) { return !stays(e); }),
+               from.end());
+  };
+  move_out(gt.planes, gt.barely_seen.planes, [](const auto& plane) { return plane.id == 4; });
+  move_out(gt.lines, gt.barely_seen.lines, [](const auto& line) { return line.id == 0; });
+  move_out(gt.corners, gt.barely_seen.corners, [](const auto& corner) { return corner.id < 3; });
+  PrimitiveTallies tallies = comparePrimitives(gt, room());
+  EXPECT_EQ(tallies.planes.est_correct, 1u);
+  EXPECT_EQ(tallies.planes.est_neutral, 5u);
+  EXPECT_EQ(tallies.lines.est_neutral, 11u);
+  EXPECT_EQ(tallies.corners.est_neutral, 5u);
+  for (const PrimitiveTally& tally : {tallies.planes, tallies.lines, tallies.corners}) {
+    EXPECT_EQ(tally.precision(), 1.0);
+    EXPECT_EQ(tally.recall(), 1.0);
+  }
+  EXPECT_EQ(tallies.orthogonality.checked, 12u);  // their true angles are known all the same
+  tallies.add(tallies);
+  EXPECT_EQ(tallies.lines.est_neutral, 22u);
+  // What is nowhere true, and duplicates of what was asked for, stay wrong.
+  PlanarMap est;
+  est.planes = {gt.planes[0], gt.planes[0], square(7, {0, 0, 0.5}, {0, 0, 1}, 1.0)};
+  est.planes[1].id = 9;
+  EXPECT_EQ(comparePrimitives(gt, est).planes.precision(), 1.0 / 3.0);
+}
+
+TEST(ComparePrimitives, LinesBeyondTheSeenStretchOfASeamAreNeutral) {
+  PlanarMap gt;
+  const auto line = [](double from, double to) {
+    PlanarMapLine result;
+    result.planes = {0, 1};
+    result.start.x() = from;
+    result.end.x() = to;
+    return result;
+  };
+  gt.lines = {line(0.0, 2.0)};
+  gt.barely_seen.lines = {line(2.0, 4.0)};
+  const auto tally = [&](double from, double to) {
+    PlanarMap est;
+    est.lines = {line(from, to)};
+    return comparePrimitives(gt, est).lines;
+  };
+  EXPECT_EQ(tally(0.5, 3.0).est_correct, 1u);  // asked for, and longer than that
+  EXPECT_EQ(tally(2.2, 3.5).est_neutral, 1u);
+  EXPECT_EQ(tally(3.8, 5.0).precision(), 0.0);  // mostly where nothing is
+  EXPECT_EQ(tally(1.7, 2.0).precision(), 0.0);  // a fragment of what was seen
+}
+
+TEST(ComparePrimitives, RecallBySizeWeighsPlanesByPixelsAndLinesByMetres) {
+  PlanarMap gt;
+  gt.planes = {square(0, {0, 0, 0}, {0, 0, 1}, 1.0), square(1, {5, 0, 3}, {0, 0, 1}, 1.0)};
+  gt.planes[0].points = 900;
+  gt.planes[1].points = 100;
+  gt.lines.resize(2);
+  gt.lines[0].planes = {0, 1};
+  gt.lines[0].end.x() = 3.0;
+  gt.lines[1].planes = {0, 2};
+  gt.lines[1].end.y() = 1.0;
+  PlanarMap est;
+  est.planes = {gt.planes[0]};
+  est.lines = {gt.lines[1]};
+  PrimitiveTallies tallies = comparePrimitives(gt, est);
+  EXPECT_DOUBLE_EQ(*tallies.planes.recallBySize(), 0.9);
+  EXPECT_DOUBLE_EQ(*tallies.lines.recallBySize(), 0.25);
+  EXPECT_FALSE(tallies.corners.recallBySize());
+  tallies.add(comparePrimitives(gt, gt));
+  EXPECT_DOUBLE_EQ(*tallies.planes.recallBySize(), 0.95);
+}
+
+TEST(ComparePrimitives, ClaimsOfFragmentsAreChecked) {
+  PlanarMap gt;
+  const double tilt = degToRad(4.0);
+  gt.planes.push_back(square(0, {0, 0, 0}, {0, 0, 1}, 2.0));
+  gt.planes.push_back(square(1, {2, 0, 1}, {-std::cos(tilt), 0, std::sin(tilt)}, 1.0));
+  PlanarMap est = gt;
+  est.planes.push_back(est.planes[1]);  // a duplicate, which no true plane is matched to
+  est.planes[2].id = 2;
+  est.planes[2].orthogonal_to = {0};
+  const OrthogonalityTally tally = comparePrimitives(gt, est).orthogonality;
+  EXPECT_EQ(tally.checked, 1u);
+  EXPECT_EQ(tally.wrong, 1u);
+}
+
 TEST(ComparePrimitives, SegmentsOfOnePairOfPlanesAreOneLine) {
   PlanarMap gt, est;
   const auto add = [](PlanarMap& map, double from, double to) {

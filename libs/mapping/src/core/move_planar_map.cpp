@@ -33,22 +33,29 @@ void movePlane(const Eigen::Isometry3d& b_from_a, PlanarMapPlane& plane) {
   }
 }
 
-}  // namespace
-
-PlanarMap movedPlanarMap(const Eigen::Isometry3d& b_from_a, PlanarMap map_in_a) {
-  PlanarMap map = std::move(map_in_a);
+/// Moves planes, lines and corners of a PlanarMap or its BarelySeen.
+template <typename Elements>
+void moveElements(const Eigen::Isometry3d& b_from_a, Elements& elements) {
   const Eigen::Quaterniond rotation(b_from_a.linear());
-  for (PlanarMapPlane& plane : map.planes) movePlane(b_from_a, plane);
-  for (PlanarMapFamily& family : map.families) family.normal = b_from_a.linear() * family.normal;
-  for (PlanarMapLine& line : map.lines) {
+  for (PlanarMapPlane& plane : elements.planes) movePlane(b_from_a, plane);
+  for (PlanarMapLine& line : elements.lines) {
     line.start = b_from_a * line.start;
     line.end = b_from_a * line.end;
   }
-  for (PlanarMapCorner& corner : map.corners) {
+  for (PlanarMapCorner& corner : elements.corners) {
     corner.position = b_from_a * corner.position;
     corner.orientation = (rotation * corner.orientation).normalized();
     corner.covariance = b_from_a.linear() * corner.covariance * b_from_a.linear().transpose();
   }
+}
+
+}  // namespace
+
+PlanarMap movedPlanarMap(const Eigen::Isometry3d& b_from_a, PlanarMap map_in_a) {
+  PlanarMap map = std::move(map_in_a);
+  moveElements(b_from_a, map);
+  moveElements(b_from_a, map.barely_seen);
+  for (PlanarMapFamily& family : map.families) family.normal = b_from_a.linear() * family.normal;
   return map;
 }
 

@@ -25,11 +25,9 @@ double angleBetweenFrames(const Eigen::Quaterniond& a, const Eigen::Quaterniond&
   return 2.0 * std::atan2(rest.vec().norm(), std::abs(rest.w()));
 }
 
-}  // namespace
-
-PrimitiveMatching matchCorners(const std::vector<PlanarMapCorner>& gt,
-                               const std::vector<PlanarMapCorner>& est,
-                               const PrimitiveErrorParams& params) {
+std::vector<PrimitiveCandidate> sameCorners(const std::vector<PlanarMapCorner>& gt,
+                                            const std::vector<PlanarMapCorner>& est,
+                                            const PrimitiveErrorParams& params) {
   std::vector<PrimitiveCandidate> candidates;
   for (std::size_t g = 0; g < gt.size(); ++g) {
     for (std::size_t e = 0; e < est.size(); ++e) {
@@ -41,7 +39,16 @@ PrimitiveMatching matchCorners(const std::vector<PlanarMapCorner>& gt,
           {g, e, angle, distance, angle / params.max_angle + distance / params.max_distance});
     }
   }
-  return matchPrimitives(gt.size(), est.size(), candidates,
+  return candidates;
+}
+
+}  // namespace
+
+PrimitiveMatching matchCorners(const PlanarMap& gt, const PlanarMap& est,
+                               const PrimitiveErrorParams& params) {
+  return matchPrimitives(std::vector<double>(gt.corners.size(), 1.0), est.corners.size(),
+                         sameCorners(gt.corners, est.corners, params),
+                         sameCorners(gt.barely_seen.corners, est.corners, params),
                          [](std::size_t, std::size_t) { return false; });
 }
 

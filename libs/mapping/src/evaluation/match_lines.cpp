@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <map>
 #include <utility>
 
@@ -99,13 +100,13 @@ double distanceFrom(const SupportedLine& line, const Eigen::Vector3d& point) {
   return line.direction.cross(point - line.origin).norm();
 }
 
-}  // namespace
+/// Whether the extents of two lines along each other, of which they share a stretch, agree.
+using ExtentsAgree = std::function<bool(double gt_length, double est_length, double shared)>;
 
-PrimitiveMatching matchLines(const std::vector<PlanarMapLine>& gt_segments,
-                             const std::vector<PlanarMapLine>& est_segments,
-                             const PrimitiveErrorParams& params) {
-  const std::vector<SupportedLine> gt = groupByPlanes(gt_segments);
-  const std::vector<SupportedLine> est = groupByPlanes(est_segments);
+std::vector<PrimitiveCandidate> sameLines(const std::vector<SupportedLine>& gt,
+                                          const std::vector<SupportedLine>& est,
+                                          const PrimitiveErrorParams& params,
+                                          const ExtentsAgree& extents_agree) {
   std::vector<PrimitiveCandidate> candidates;
   for (std::size_t g = 0; g < gt.size(); ++g) {
     const std::vector<Interval> gt_intervals = intervalsAlong(gt[g], gt[g]);
@@ -118,13 +119,30 @@ PrimitiveMatching matchLines(const std::vector<PlanarMapLine>& gt_segments,
       if (!(shared.length > 0.0)) continue;
       const double distance = distanceFrom(est[e], shared.middle);
       if (distance > params.max_distance) continue;
-      if (!extentsAgree(gt_length, lengthOf(est_intervals), shared.length, params)) continue;
+      if (!extents_agree(gt_length, lengthOf(est_intervals), shared.length)) continue;
       candidates.push_back({g, e, angle, distance,
                             angle / params.max_angle + distance / params.max_distance + 1.0 -
                                 shared.length / gt_length});
     }
   }
-  return matchPrimitives(gt.size(), est.size(), candidates, [&](std::size_t a, std::size_t b) {
+  return candidates;
+}
+
+}  // namespace
+
+PrimitiveMatching matchLines(const PlanarMap& gt_map, const PlanarMap& est_map,
+                             const PrimitiveErrorParams& params) {
+  const std::vector<SupportedLine> gt = groupByPlanes(gt_map.lines);
+  const std::vector<SupportedLine> est = groupByPlanes(est_map.lines);
+  const auto same = sameLines(gt, est, params, [&](double gt_length, double length, double shared) {
+    return extentsAgree(gt_length, length, shared, params);
+  });
+  const auto barely_seen = sameLines(
+      groupByPlanes(gt_map.barely_seen.lines), est, params,
+      [&](double, double length, double shared) { return shared >= params.min_overlap * length; });
+  std::vector<double> lengths;
+  for (const SupportedLine& line : gt) lengths.push_back(lengthOf(intervalsAlong(line, line)));
+  return matchPrimitives(lengths, est.size(), same, barely_seen, [&](std::size_t a, std::size_t b) {
     return angleBetweenLines(gt[a], gt[b]) <= kSameAngle &&
            distanceFrom(gt[a], gt[b].origin) <= kSameDistance;
   });

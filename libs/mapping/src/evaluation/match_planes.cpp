@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 namespace opp::mapping {
 namespace {
@@ -42,34 +43,76 @@ Comparison compare(const PlanarMapPlane& gt, const Eigen::Vector3d& gt_centroid,
   return {angleBetween(gt.plane, est), std::abs(est.signedDistance(gt_centroid))};
 }
 
-}  // namespace
+/// The pair as candidate, if the planes are the same. \param centroid of the true polygons.
+std::optional<PrimitiveCandidate> samePlane(const PlanarMapPlane& gt,
+                                            const Eigen::Vector3d& centroid,
+                                            const PlanarMapPlane& est,
+                                            const PrimitiveErrorParams& params) {
+  const Comparison difference = compare(gt, centroid, est.plane);
+  if (difference.angle > params.max_angle || difference.offset > params.max_offset) return {};
+  const double gt_area = areaOf(gt.polygons), est_area = areaOf(est.polygons);
+  double uncovered = 0.0;
+  if (gt_area > 0.0 && est_area > 0.0) {
+    const double shared = sharedArea(gt.plane, gt.polygons, est.polygons);
+    if (!extentsAgree(gt_area, est_area, shared, params)) return {};
+    uncovered = 1.0 - std::min(1.0, shared / gt_area);
+  } else if (gt_area > 0.0) {
+    if (distanceTo(gt.plane, gt.polygons, est.centroid) > params.max_offset) return {};
+    uncovered = 1.0;
+  }
+  return PrimitiveCandidate{
+      0, 0, difference.angle, difference.offset,
+      difference.angle / params.max_angle + difference.offset / params.max_offset + uncovered};
+}
 
-PrimitiveMatching matchPlanes(const std::vector<PlanarMapPlane>& gt,
-                              const std::vector<PlanarMapPlane>& est,
-                              const PrimitiveErrorParams& params) {
+std::vector<Eigen::Vector3d> centroidsOf(const std::vector<PlanarMapPlane>& planes) {
   std::vector<Eigen::Vector3d> centroids;
-  for (const PlanarMapPlane& plane : gt) centroids.push_back(polygonCentroid(plane));
+  for (const PlanarMapPlane& plane : planes) centroids.push_back(polygonCentroid(plane));
+  return centroids;
+}
+
+std::vector<PrimitiveCandidate> samePlanes(const std::vector<PlanarMapPlane>& gt,
+                                           const std::vector<PlanarMapPlane>& est,
+                                           const PrimitiveErrorParams& params) {
+  const std::vector<Eigen::Vector3d> centroids = centroidsOf(gt);
   std::vector<PrimitiveCandidate> candidates;
   for (std::size_t g = 0; g < gt.size(); ++g) {
-    const double gt_area = areaOf(gt[g].polygons);
     for (std::size_t e = 0; e < est.size(); ++e) {
-      const Comparison difference = compare(gt[g], centroids[g], est[e].plane);
-      if (difference.angle > params.max_angle || difference.offset > params.max_offset) continue;
-      const double est_area = areaOf(est[e].polygons);
-      const bool have_extents = gt_area > 0.0 && est_area > 0.0;
-      const double shared =
-          have_extents ? sharedArea(gt[g].plane, gt[g].polygons, est[e].polygons) : 0.0;
-      if (have_extents && !extentsAgree(gt_area, est_area, shared, params)) continue;
-      const double uncovered = have_extents ? 1.0 - std::min(1.0, shared / gt_area) : 0.0;
-      candidates.push_back({g, e, difference.angle, difference.offset,
-                            difference.angle / params.max_angle +
-                                difference.offset / params.max_offset + uncovered});
+      auto candidate = samePlane(gt[g], centroids[g], est[e], params);
+      if (!candidate) continue;
+      candidate->gt = g;
+      candidate->est = e;
+      candidates.push_back(*candidate);
     }
   }
-  return matchPrimitives(gt.size(), est.size(), candidates, [&](std::size_t a, std::size_t b) {
-    const Comparison difference = compare(gt[a], centroids[a], gt[b].plane);
-    return difference.angle <= kSameAngle && difference.offset <= kSameDistance;
-  });
+  return candidates;
+}
+
+}  // namespace
+
+PlaneMatching matchPlanes(const PlanarMap& gt, const PlanarMap& est,
+                          const PrimitiveErrorParams& params) {
+  const std::vector<PrimitiveCandidate> same = samePlanes(gt.planes, est.planes, params);
+  PrimitiveErrorParams any_coverage = params;
+  any_coverage.min_coverage = 0.0;
+  const auto barely_seen = samePlanes(gt.barely_seen.planes, est.planes, any_coverage);
+  const std::vector<Eigen::Vector3d> centroids = centroidsOf(gt.planes);
+  std::vector<double> pixels;
+  for (const PlanarMapPlane& plane : gt.planes) pixels.push_back(static_cast<double>(plane.points));
+  PlaneMatching matching;
+  static_cast<PrimitiveMatching&>(matching) = matchPrimitives(
+      pixels, est.planes.size(), same, barely_seen, [&](std::size_t a, std::size_t b) {
+        const Comparison difference = compare(gt.planes[a], centroids[a], gt.planes[b].plane);
+        return difference.angle <= kSameAngle && difference.offset <= kSameDistance;
+      });
+  matching.truth_of_est.assign(est.planes.size(), nullptr);
+  for (const auto& c : barely_seen) matching.truth_of_est[c.est] = &gt.barely_seen.planes[c.gt];
+  for (const auto& c : same) matching.truth_of_est[c.est] = &gt.planes[c.gt];
+  for (std::size_t e = 0; e < est.planes.size(); ++e) {
+    const int matched = matching.gt_of_est[e];
+    if (matched >= 0) matching.truth_of_est[e] = &gt.planes[static_cast<std::size_t>(matched)];
+  }
+  return matching;
 }
 
 }  // namespace opp::mapping

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace opp::mapping {
 namespace {
@@ -71,6 +72,13 @@ bool insideAny(const std::vector<Polygon2>& polygons, const Eigen::Vector2d& p) 
                      [&](const Polygon2& polygon) { return inside(polygon, p); });
 }
 
+double distanceToSegment(const Eigen::Vector3d& a, const Eigen::Vector3d& b,
+                         const Eigen::Vector3d& point) {
+  const Eigen::Vector3d ab = b - a;
+  const double s = ab.squaredNorm() > 0.0 ? ab.dot(point - a) / ab.squaredNorm() : 0.0;
+  return (point - a - std::clamp(s, 0.0, 1.0) * ab).norm();
+}
+
 }  // namespace
 
 double areaOf(const std::vector<PlanarPolygon>& polygons) {
@@ -111,6 +119,22 @@ double sharedArea(const Plane& plane, const std::vector<PlanarPolygon>& on_plane
     }
   }
   return shared * step.x() * step.y();
+}
+
+double distanceTo(const Plane& plane, const std::vector<PlanarPolygon>& on_plane,
+                  const Eigen::Vector3d& point) {
+  const Eigen::Matrix<double, 3, 2> axes = tangentBasis(plane.normal());
+  const Eigen::Vector3d foot = plane.project(point);
+  double distance = std::numeric_limits<double>::infinity();
+  for (const PlanarPolygon& polygon : on_plane) {
+    const PlanarPolygon filled{polygon.outer, {}};
+    if (insideAny(project({filled}, axes), axes.transpose() * foot)) return 0.0;
+    const Ring& ring = polygon.outer;
+    for (std::size_t k = 0; k < ring.size(); ++k) {
+      distance = std::min(distance, distanceToSegment(ring[k], ring[(k + 1) % ring.size()], foot));
+    }
+  }
+  return distance;
 }
 
 }  // namespace opp::mapping

@@ -38,7 +38,7 @@ std::set<IdPair> claimsOf(const PlanarMap& map) {
 /// In a single scan the origin is the sensor, and corners are measured the worse the farther off.
 PrimitiveTally cornerTally(const PlanarMap& gt, const PlanarMap& est,
                            const PrimitiveErrorParams& params) {
-  PrimitiveMatching matching = matchCorners(gt.corners, est.corners, params);
+  PrimitiveMatching matching = matchCorners(gt, est, params);
   if (gt.frame != "sensor") return matching.tally;
   for (std::size_t e = 0; e < est.corners.size(); ++e) {
     if (matching.gt_of_est[e] < 0) continue;
@@ -49,12 +49,12 @@ PrimitiveTally cornerTally(const PlanarMap& gt, const PlanarMap& est,
   return matching.tally;
 }
 
-OrthogonalityTally checkOrthogonality(const PlanarMap& gt, const PlanarMap& est,
-                                      const std::vector<int>& gt_of_est, double tolerance) {
+OrthogonalityTally checkOrthogonality(const PlanarMap& est,
+                                      const std::vector<const PlanarMapPlane*>& truth_of_est,
+                                      double tolerance) {
   std::map<int, const Plane*> truth_of;
   for (std::size_t e = 0; e < est.planes.size(); ++e) {
-    if (gt_of_est[e] < 0) continue;
-    truth_of[est.planes[e].id] = &gt.planes[static_cast<std::size_t>(gt_of_est[e])].plane;
+    if (truth_of_est[e] != nullptr) truth_of[est.planes[e].id] = &truth_of_est[e]->plane;
   }
   OrthogonalityTally tally;
   for (const auto& [a, b] : claimsOf(est)) {
@@ -79,14 +79,13 @@ PrimitiveTallies comparePrimitives(const PlanarMap& ground_truth, const PlanarMa
     throw std::invalid_argument("comparePrimitives: gt_from_est is not finite");
   }
   const PlanarMap est = movedPlanarMap(gt_from_est, estimate);
-  const PrimitiveMatching planes = matchPlanes(ground_truth.planes, est.planes, params);
+  const PlaneMatching planes = matchPlanes(ground_truth, est, params);
   PrimitiveTallies tallies;
   tallies.maps = 1;
   tallies.planes = planes.tally;
-  tallies.lines = matchLines(ground_truth.lines, est.lines, params).tally;
+  tallies.lines = matchLines(ground_truth, est, params).tally;
   tallies.corners = cornerTally(ground_truth, est, params);
-  tallies.orthogonality =
-      checkOrthogonality(ground_truth, est, planes.gt_of_est, params.false_orthogonality);
+  tallies.orthogonality = checkOrthogonality(est, planes.truth_of_est, params.false_orthogonality);
   return tallies;
 }
 

@@ -7,8 +7,11 @@
 namespace opp::mapping {
 
 PrimitiveMatching matchPrimitives(
-    std::size_t gt_count, std::size_t est_count, const std::vector<PrimitiveCandidate>& candidates,
+    const std::vector<double>& gt_sizes, std::size_t est_count,
+    const std::vector<PrimitiveCandidate>& candidates,
+    const std::vector<PrimitiveCandidate>& barely_seen,
     const std::function<bool(std::size_t, std::size_t)>& same_in_truth) {
+  const std::size_t gt_count = gt_sizes.size();
   std::vector<AssignmentCandidate> edges;
   for (const PrimitiveCandidate& c : candidates) edges.push_back({c.gt, c.est, c.cost});
   const std::vector<int> chosen = assignOneToOne(gt_count, est_count, edges);
@@ -32,7 +35,16 @@ PrimitiveMatching matchPrimitives(
     if (chosen[c.gt] >= 0 || other < 0) continue;
     if (same_in_truth(c.gt, static_cast<std::size_t>(other))) found[c.gt] = true;
   }
-  for (const bool is_found : found) tally.gt_found += is_found;
+  for (std::size_t g = 0; g < gt_count; ++g) {
+    tally.gt_found += found[g];
+    tally.gt_size += gt_sizes[g];
+    if (found[g]) tally.gt_size_found += gt_sizes[g];
+  }
+  std::vector<bool> is_neutral(est_count, false);
+  for (const PrimitiveCandidate& c : barely_seen) is_neutral[c.est] = true;
+  // Also what is the same as an element that another one was matched to: a duplicate is wrong.
+  for (const PrimitiveCandidate& c : candidates) is_neutral[c.est] = false;
+  for (const bool neutral : is_neutral) tally.est_neutral += neutral;
   return matching;
 }
 

@@ -27,20 +27,26 @@ struct PrimitiveMatching {
   std::vector<int> gt_of_est;  ///< the true element that an estimated one is matched to; −1: none
 };
 
-/// Matches one to one and tallies. `same_in_truth(a, b)` says whether true elements a and b lie on
-/// one and the same plane or line.
+/// Matches one to one and tallies.
+/// \param gt_sizes of the true elements (see PrimitiveTally::gt_size), one for each.
+/// \param barely_seen pairs of elements of BarelySeen and estimated ones that are the same.
+/// \param same_in_truth whether two true elements lie on one and the same plane or line.
 PrimitiveMatching matchPrimitives(
-    std::size_t gt_count, std::size_t est_count, const std::vector<PrimitiveCandidate>& candidates,
+    const std::vector<double>& gt_sizes, std::size_t est_count,
+    const std::vector<PrimitiveCandidate>& candidates,
+    const std::vector<PrimitiveCandidate>& barely_seen,
     const std::function<bool(std::size_t, std::size_t)>& same_in_truth);
 
-PrimitiveMatching matchPlanes(const std::vector<PlanarMapPlane>& gt,
-                              const std::vector<PlanarMapPlane>& est,
-                              const PrimitiveErrorParams& params);
-PrimitiveMatching matchLines(const std::vector<PlanarMapLine>& gt,
-                             const std::vector<PlanarMapLine>& est,
+struct PlaneMatching : PrimitiveMatching {
+  /// The true plane, barely seen ones included, that each estimated one is or is a part of.
+  std::vector<const PlanarMapPlane*> truth_of_est;
+};
+
+PlaneMatching matchPlanes(const PlanarMap& gt, const PlanarMap& est,
+                          const PrimitiveErrorParams& params);
+PrimitiveMatching matchLines(const PlanarMap& gt, const PlanarMap& est,
                              const PrimitiveErrorParams& params);
-PrimitiveMatching matchCorners(const std::vector<PlanarMapCorner>& gt,
-                               const std::vector<PlanarMapCorner>& est,
+PrimitiveMatching matchCorners(const PlanarMap& gt, const PlanarMap& est,
                                const PrimitiveErrorParams& params);
 
 /// Whether two extents (areas or lengths) of sizes `gt` and `est` that share `shared` are of the

@@ -91,7 +91,8 @@ Json toJson(const PlanarMapCorner& corner) {
 /// Appends a list with one element a line: readable, and short in a diff.
 template <typename Elements>
 void appendList(std::string& text, const char* key, const Elements& elements) {
-  text += std::string(",\n\"") + key + "\": [";
+  if (text.back() != '{') text += ",\n";
+  text += std::string("\"") + key + "\": [";
   bool first = true;
   for (const auto& element : elements) {
     text += (first ? "\n  " : ",\n  ") + toJson(element).dump();
@@ -118,6 +119,13 @@ std::string formatPlanarMap(const PlanarMap& map, const DetectionSummary* detect
   appendList(text, "families", map.families);
   appendList(text, "lines", map.lines);
   appendList(text, "corners", map.corners);
+  if (!map.barely_seen.empty()) {
+    text += ",\n\"barely_seen\": {";
+    appendList(text, "planes", map.barely_seen.planes);
+    appendList(text, "lines", map.barely_seen.lines);
+    appendList(text, "corners", map.barely_seen.corners);
+    text += "}";
+  }
   return text + "\n}\n";
 }
 

@@ -29,6 +29,8 @@ class Node {
     throw std::runtime_error(path_ + ": " + problem);
   }
 
+  bool has(const char* key) const { return json_.is_object() && json_.contains(key); }
+
   Node operator[](const char* key) const {
     const auto found = json_.is_object() ? json_.find(key) : json_.end();
     if (found == json_.end()) fail(std::string("key \"") + key + "\" is missing");
@@ -178,15 +180,22 @@ PlanarMapCorner parseCorner(const Node& node) {
   return corner;
 }
 
+/// Reads planes, lines and corners into a PlanarMap or its BarelySeen.
 template <typename Elements>
-std::set<int> idsOf(const Elements& elements, const Node& list) {
-  std::set<int> ids;
+void parseElements(const Node& root, Elements& elements) {
+  for (const Node& node : root["planes"].elements()) elements.planes.push_back(parsePlane(node));
+  for (const Node& node : root["lines"].elements()) elements.lines.push_back(parseLine(node));
+  for (const Node& node : root["corners"].elements()) elements.corners.push_back(parseCorner(node));
+}
+
+/// Adds the ids of a list to `ids`.
+template <typename Elements>
+void addIds(const Elements& elements, const Node& list, std::set<int>& ids) {
   for (const auto& element : elements) {
     if (!ids.insert(element.id).second) {
       list.fail("id " + std::to_string(element.id) + " occurs twice");
     }
   }
-  return ids;
 }
 
 template <typename Ids>
@@ -196,18 +205,31 @@ void requireKnown(const Ids& references, const std::set<int>& known, const Node&
   }
 }
 
-void checkReferences(const PlanarMap& map, const Node& root) {
-  const std::set<int> planes = idsOf(map.planes, root["planes"]);
-  const std::set<int> families = idsOf(map.families, root["families"]);
-  idsOf(map.lines, root["lines"]);
-  idsOf(map.corners, root["corners"]);
-  for (const PlanarMapPlane& plane : map.planes) {
+/// Ids and references of a PlanarMap or its BarelySeen. \param planes ids of the planes that may be
+/// referred to beside its own, which are added.
+template <typename Elements>
+void checkElements(const Elements& elements, const Node& root, const std::set<int>& families,
+                   std::set<int>& planes) {
+  addIds(elements.planes, root["planes"], planes);
+  std::set<int> lines, corners;
+  addIds(elements.lines, root["lines"], lines);
+  addIds(elements.corners, root["corners"], corners);
+  for (const PlanarMapPlane& plane : elements.planes) {
     requireKnown(plane.orthogonal_to, planes, root["planes"]);
     if (plane.family >= 0) requireKnown(std::array{plane.family}, families, root["planes"]);
   }
+  for (const auto& line : elements.lines) requireKnown(line.planes, planes, root["lines"]);
+  for (const auto& corner : elements.corners) requireKnown(corner.planes, planes, root["corners"]);
+}
+
+void checkReferences(const PlanarMap& map, const Node& root) {
+  std::set<int> planes, families;
+  addIds(map.families, root["families"], families);
+  checkElements(map, root, families, planes);
   for (const auto& family : map.families) requireKnown(family.planes, planes, root["families"]);
-  for (const auto& line : map.lines) requireKnown(line.planes, planes, root["lines"]);
-  for (const auto& corner : map.corners) requireKnown(corner.planes, planes, root["corners"]);
+  if (root.has("barely_seen")) {
+    checkElements(map.barely_seen, root["barely_seen"], families, planes);
+  }
 }
 
 }  // namespace
@@ -224,10 +246,9 @@ PlanarMap parsePlanarMap(std::string_view text, const std::string& name) {
   if (root["version"].integer() != 1) root.fail("has a version that this program does not know");
   PlanarMap map;
   map.frame = root["frame"].text();
-  for (const Node& node : root["planes"].elements()) map.planes.push_back(parsePlane(node));
+  parseElements(root, map);
   for (const Node& node : root["families"].elements()) map.families.push_back(parseFamily(node));
-  for (const Node& node : root["lines"].elements()) map.lines.push_back(parseLine(node));
-  for (const Node& node : root["corners"].elements()) map.corners.push_back(parseCorner(node));
+  if (root.has("barely_seen")) parseElements(root["barely_seen"], map.barely_seen);
   checkReferences(map, root);
   return map;
 }

@@ -44,10 +44,10 @@ std::uint32_t Coverage::count(int u, int v) const {
                  static_cast<std::size_t>(u)];
 }
 
-bool Coverage::seenNear(const Eigen::Vector3d& point) const {
+bool Coverage::seenNear(const Eigen::Vector3d& point, int radius) const {
   const Eigen::Vector2i at = cellOf(point);
-  for (int v = at.y() - 1; v <= at.y() + 1; ++v) {
-    for (int u = at.x() - 1; u <= at.x() + 1; ++u) {
+  for (int v = at.y() - radius; v <= at.y() + radius; ++v) {
+    for (int u = at.x() - radius; u <= at.x() + radius; ++u) {
       if (count(u, v) > 0) return true;
     }
   }

@@ -22,8 +22,8 @@ class Coverage {
   /// nearest cell.
   void add(const Eigen::Vector3d& point);
   std::uint64_t total() const { return total_; }
-  /// Whether a cell of the 3 × 3 around the point was seen.
-  bool seenNear(const Eigen::Vector3d& point) const;
+  /// Whether a cell within `radius` cells of the point's was seen, diagonally, too.
+  bool seenNear(const Eigen::Vector3d& point, int radius) const;
   /// Calls `visit(centre, pixels)` for each seen cell, row by row.
   void forEachSeen(const std::function<void(const Eigen::Vector3d&, std::uint32_t)>& visit) const;
   Eigen::Vector2i firstCell() const { return first_; }  ///< of the raster's rectangle

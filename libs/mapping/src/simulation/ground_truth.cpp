@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 #include <utility>
 
 namespace opp::mapping {
@@ -17,6 +18,8 @@ struct GroundTruth::Impl {
   std::map<int, std::vector<double>> observations;  ///< timestamps, by side
 
   void addPixel(int side, const Eigen::Vector3d& origin, const Eigen::Vector3d& direction);
+  /// Times of the frames that saw enough of a side of the plane, ascending.
+  std::vector<double> observationsOf(const SeenPlane& plane) const;
 };
 
 namespace {
@@ -88,10 +91,22 @@ void addFamilies(PlanarMap& map) {
   }
 }
 
-void addLines(const std::vector<SeenLine>& lines, PlanarMap& map) {
-  for (const SeenLine& line : lines) {
-    map.lines.push_back(
-        {static_cast<int>(map.lines.size()), line.planes, line.start, line.end, line.kind});
+/// Adds segments with ids that go on from `first_id`.
+void addSegments(const std::vector<SeenLine>& segments, int first_id,
+                 std::vector<PlanarMapLine>& lines) {
+  for (const SeenLine& line : segments) {
+    lines.push_back({first_id++, line.planes, line.start, line.end, line.kind});
+  }
+}
+
+/// Numbers corners from `first_id` on.
+std::vector<PlanarMapCorner> numbered(std::vector<PlanarMapCorner> corners, int first_id) {
+  for (PlanarMapCorner& corner : corners) corner.id = first_id++;
+  return corners;
+}
+
+void setPartners(PlanarMap& map) {
+  for (const PlanarMapLine& line : map.lines) {
     for (std::size_t end = 0; end < 2; ++end) {
       auto& partners = map.planes[static_cast<std::size_t>(line.planes[end])].orthogonal_to;
       partners.push_back(line.planes[1 - end]);
@@ -112,6 +127,7 @@ GroundTruthParams GroundTruthParams::forSensor(SimulatedSensor sensor) {
     params.cell = 0.1;
     params.closing = 0.3;
     params.reach = 0.3;
+    params.near_gap = 0.1;
   }
   return params;
 }
@@ -164,6 +180,15 @@ void GroundTruth::add(const SimulatedFrame& frame, const Eigen::Isometry3d& body
   }
 }
 
+std::vector<double> GroundTruth::Impl::observationsOf(const SeenPlane& plane) const {
+  std::set<double> times;
+  for (const int side : plane.sides) {
+    const auto found = observations.find(side);
+    if (found != observations.end()) times.insert(found->second.begin(), found->second.end());
+  }
+  return {times.begin(), times.end()};
+}
+
 PlanarMap GroundTruth::map() const {
   const Geos geos;
   const auto& params = impl_->params;
@@ -173,29 +198,29 @@ PlanarMap GroundTruth::map() const {
     for (const auto& vertex : face.outer) box.extend(vertex);
   }
   PlanarMap map;
-  for (const SeenPlane& plane : seen) {
+  for (std::size_t i = 0; i < seen.size(); ++i) {
     PlanarMapPlane entry;
-    entry.id = static_cast<int>(map.planes.size());
-    entry.plane = plane.plane;
-    entry.points = static_cast<long>(plane.pixels);
-    entry.kind = kindOf(plane, box);
-    setPolygons(plane, seenPolygons(geos, plane, params), entry);
-    for (const int side : plane.sides) {
-      const auto found = impl_->observations.find(side);
-      if (found == impl_->observations.end()) continue;
-      entry.observations.insert(entry.observations.end(), found->second.begin(),
-                                found->second.end());
-    }
-    std::sort(entry.observations.begin(), entry.observations.end());
-    entry.observations.erase(std::unique(entry.observations.begin(), entry.observations.end()),
-                             entry.observations.end());
-    map.planes.push_back(std::move(entry));
+    entry.id = static_cast<int>(i);
+    entry.plane = seen[i].plane;
+    entry.points = static_cast<long>(seen[i].pixels);
+    entry.kind = kindOf(seen[i], box);
+    entry.centroid = seen[i].someSeenPoint();
+    setPolygons(seen[i], seenPolygons(geos, seen[i], params), entry);
+    entry.observations = impl_->observationsOf(seen[i]);
+    auto& list = isBarelySeen(seen[i], params) ? map.barely_seen.planes : map.planes;
+    list.push_back(std::move(entry));
   }
   addFamilies(map);
-  const std::vector<Seam> all_seams = seams(geos, seen);
-  const std::vector<SeenLine> lines = seenLines(seen, all_seams, params);
-  addLines(lines, map);
-  map.corners = seenCorners(geos, seen, all_seams, lines, params);
+  const std::vector<SeenLine> lines = seenLines(seen, seams(geos, seen, kTouch), params);
+  const std::vector<Seam> near_seams = seams(geos, seen, std::max(kTouch, params.near_gap));
+  addSegments(lines, 0, map.lines);
+  setPartners(map);
+  addSegments(restOfSeams(near_seams, lines, params), static_cast<int>(lines.size()),
+              map.barely_seen.lines);
+  SeenCorners corners = seenCorners(geos, seen, near_seams, lines, params);
+  map.corners = numbered(std::move(corners.corners), 0);
+  map.barely_seen.corners =
+      numbered(std::move(corners.barely), static_cast<int>(map.corners.size()));
   return map;
 }
 

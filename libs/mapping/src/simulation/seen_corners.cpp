@@ -11,8 +11,6 @@
 namespace opp::mapping {
 namespace {
 
-constexpr double kTouch = 1e-6;  ///< as for lines [m]
-
 Eigen::Vector3d commonPoint(const SeenPlane& a, const SeenPlane& b, const SeenPlane& c) {
   Eigen::Matrix3d normals;
   normals << a.plane.normal().transpose(), b.plane.normal().transpose(),
@@ -20,13 +18,13 @@ Eigen::Vector3d commonPoint(const SeenPlane& a, const SeenPlane& b, const SeenPl
   return normals.partialPivLu().solve(-Eigen::Vector3d(a.plane.d(), b.plane.d(), c.plane.d()));
 }
 
-bool touches(const Geos& geos, const SeenPlane& plane, const Eigen::Vector3d& point) {
+bool touches(const Geos& geos, const SeenPlane& plane, const Eigen::Vector3d& point, double gap) {
   const auto h = geos.handle();
   const Eigen::Vector2d uv = plane.coordinates().uv(point);
   const auto place = geos.checked(GEOSGeom_createPointFromXY_r(h, uv.x(), uv.y()));
   double distance = 0.0;
   GEOSDistance_r(h, plane.outline.get(), place.get(), &distance);
-  return distance <= kTouch;
+  return distance <= gap;
 }
 
 std::uint64_t pixelsNear(const SeenPlane& plane, const Eigen::Vector3d& point, double reach) {
@@ -63,6 +61,34 @@ CornerKind kindOf(const std::array<int, 3>& ids, const Eigen::Vector3d& point,
   return convex == 3 ? CornerKind::kConvex : CornerKind::kSaddle;
 }
 
+/// min_pixels within reach of the point, a third of them on each of the planes.
+bool enoughSeen(const std::array<const SeenPlane*, 3>& planes, const Eigen::Vector3d& point,
+                const GroundTruthParams& params) {
+  const auto enough = static_cast<std::uint64_t>(params.min_pixels);
+  std::uint64_t total = 0;
+  for (const SeenPlane* plane : planes) {
+    if (isBarelySeen(*plane, params) || !plane->seenNear(point, params)) return false;
+    const std::uint64_t pixels = pixelsNear(*plane, point, params.reach);
+    if (3 * pixels < enough) return false;
+    total += pixels;
+  }
+  return total >= enough;
+}
+
+/// Ascending ids of planes that pairwise have a seam.
+std::vector<std::array<int, 3>> orthogonalTriples(const std::vector<Seam>& seams) {
+  std::set<std::array<int, 2>> touching;
+  for (const Seam& seam : seams) touching.insert(seam.planes);
+  std::vector<std::array<int, 3>> result;
+  for (const auto& [i, j] : touching) {
+    for (auto next = touching.upper_bound({j, j}); next != touching.end() && (*next)[0] == j;
+         ++next) {
+      if (touching.count({i, (*next)[1]}) > 0) result.push_back({i, j, (*next)[1]});
+    }
+  }
+  return result;
+}
+
 Eigen::Quaterniond orientationOf(const SeenPlane& a, const SeenPlane& b, const SeenPlane& c) {
   Eigen::Matrix3d axes;
   axes << a.plane.normal(), b.plane.normal(), c.plane.normal();
@@ -72,38 +98,29 @@ Eigen::Quaterniond orientationOf(const SeenPlane& a, const SeenPlane& b, const S
 
 }  // namespace
 
-std::vector<PlanarMapCorner> seenCorners(const Geos& geos, const std::vector<SeenPlane>& planes,
-                                         const std::vector<Seam>& seams,
-                                         const std::vector<SeenLine>& lines,
-                                         const GroundTruthParams& params) {
-  std::set<std::array<int, 2>> touching;
-  for (const Seam& seam : seams) touching.insert(seam.planes);
-  const auto enough = static_cast<std::uint64_t>(params.min_pixels);
-  std::vector<PlanarMapCorner> result;
-  for (const auto& [i, j] : touching) {
-    for (auto next = touching.upper_bound({j, j}); next != touching.end() && (*next)[0] == j;
-         ++next) {
-      const int k = (*next)[1];
-      if (touching.count({i, k}) == 0) continue;
-      const SeenPlane& a = planes[static_cast<std::size_t>(i)];
-      const SeenPlane& b = planes[static_cast<std::size_t>(j)];
-      const SeenPlane& c = planes[static_cast<std::size_t>(k)];
-      const Eigen::Vector3d point = commonPoint(a, b, c);
-      std::uint64_t total = 0, least = enough;
-      for (const SeenPlane* plane : {&a, &b, &c}) {
-        const bool seen = plane->seenNear(point) && touches(geos, *plane, point);
-        const std::uint64_t pixels = seen ? pixelsNear(*plane, point, params.reach) : 0;
-        total += pixels;
-        least = std::min(least, pixels);
-      }
-      if (total < enough || 3 * least < enough) continue;
-      PlanarMapCorner corner;
-      corner.id = static_cast<int>(result.size());
-      corner.planes = {i, j, k};
-      corner.position = point;
-      corner.orientation = orientationOf(a, b, c);
-      corner.kind = kindOf(corner.planes, point, lines, params.reach);
-      result.push_back(corner);
+SeenCorners seenCorners(const Geos& geos, const std::vector<SeenPlane>& planes,
+                        const std::vector<Seam>& seams, const std::vector<SeenLine>& lines,
+                        const GroundTruthParams& params) {
+  SeenCorners result;
+  for (const std::array<int, 3>& ids : orthogonalTriples(seams)) {
+    const std::array<const SeenPlane*, 3> three{&planes[static_cast<std::size_t>(ids[0])],
+                                                &planes[static_cast<std::size_t>(ids[1])],
+                                                &planes[static_cast<std::size_t>(ids[2])]};
+    const Eigen::Vector3d point = commonPoint(*three[0], *three[1], *three[2]);
+    const auto meet = [&](double gap) {
+      return std::all_of(three.begin(), three.end(),
+                         [&](const SeenPlane* plane) { return touches(geos, *plane, point, gap); });
+    };
+    if (!meet(std::max(kTouch, params.near_gap))) continue;
+    PlanarMapCorner corner;
+    corner.planes = ids;
+    corner.position = point;
+    corner.orientation = orientationOf(*three[0], *three[1], *three[2]);
+    if (meet(kTouch) && enoughSeen(three, point, params)) {
+      corner.kind = kindOf(ids, point, lines, params.reach);
+      result.corners.push_back(corner);
+    } else {
+      result.barely.push_back(corner);
     }
   }
   return result;

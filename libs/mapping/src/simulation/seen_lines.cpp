@@ -8,15 +8,14 @@
 namespace opp::mapping {
 namespace {
 
-constexpr double kOrthogonal = 1e-9;  ///< |cos| of planes built at right angles
-/// Faces nearer than this touch: far above rounding, far below any gap in a scene [m].
-constexpr double kTouch = 1e-6;
+constexpr double kOrthogonal = 1e-9;         ///< |cos| of planes built at right angles
+constexpr double kShortest = 10.0 * kTouch;  ///< shorter stretches are rounding [m]
 
 using Interval = std::array<double, 2>;
 
-/// Where origin + s · direction touches the whole faces of a plane, ascending.
+/// Where origin + s · direction comes as near as `gap` to the whole faces of a plane, ascending.
 std::vector<Interval> touching(const Geos& geos, const SeenPlane& plane, const Seam& seam,
-                               const Interval& range) {
+                               const Interval& range, double gap) {
   const auto h = geos.handle();
   const PlaneCoordinates coordinates = plane.coordinates();
   GEOSCoordSequence* ends = GEOSCoordSeq_create_r(h, 2, 2);
@@ -26,7 +25,7 @@ std::vector<Interval> touching(const Geos& geos, const SeenPlane& plane, const S
   }
   const auto line = geos.checked(GEOSGeom_createLineString_r(h, ends));
   const auto grown = geos.checked(GEOSBufferWithStyle_r(
-      h, plane.outline.get(), kTouch, 1, GEOSBUF_CAP_SQUARE, GEOSBUF_JOIN_MITRE, 2.0));
+      h, plane.outline.get(), gap, 1, GEOSBUF_CAP_SQUARE, GEOSBUF_JOIN_MITRE, 2.0));
   const auto common = geos.checked(GEOSIntersection_r(h, line.get(), grown.get()));
   std::vector<Interval> result;
   for (int k = 0; k < GEOSGetNumGeometries_r(h, common.get()); ++k) {
@@ -43,7 +42,7 @@ std::vector<Interval> touching(const Geos& geos, const SeenPlane& plane, const S
           seam.direction.dot(coordinates.point(uv) - seam.origin);
     }
     std::sort(interval.begin(), interval.end());
-    if (interval[1] - interval[0] > 10.0 * kTouch) result.push_back(interval);
+    if (interval[1] - interval[0] > kShortest) result.push_back(interval);
   }
   std::sort(result.begin(), result.end());
   return result;
@@ -54,7 +53,7 @@ std::vector<Interval> common(const std::vector<Interval>& a, const std::vector<I
   for (const Interval& i : a) {
     for (const Interval& j : b) {
       const Interval both{std::max(i[0], j[0]), std::min(i[1], j[1])};
-      if (both[1] - both[0] > 10.0 * kTouch) result.push_back(both);
+      if (both[1] - both[0] > kShortest) result.push_back(both);
     }
   }
   std::sort(result.begin(), result.end());
@@ -64,14 +63,15 @@ std::vector<Interval> common(const std::vector<Interval>& a, const std::vector<I
 /// Parts of an interval where both planes were seen; gaps of up to three cells are closed, ends
 /// within two cells of the interval's are taken to it.
 std::vector<Interval> seenParts(const SeenPlane& a, const SeenPlane& b, const Seam& seam,
-                                const Interval& interval, double cell) {
+                                const Interval& interval, const GroundTruthParams& params) {
+  const double cell = params.cell;
   const int steps =
       std::max(1, static_cast<int>(std::ceil((interval[1] - interval[0]) / cell * 2.0)));
   std::vector<Interval> parts;
   for (int k = 0; k <= steps; ++k) {
     const double s = interval[0] + (interval[1] - interval[0]) * k / steps;
     const Eigen::Vector3d point = seam.origin + s * seam.direction;
-    if (!a.seenNear(point) || !b.seenNear(point)) continue;
+    if (!a.seenNear(point, params) || !b.seenNear(point, params)) continue;
     if (!parts.empty() && s - parts.back()[1] <= 3.0 * cell) {
       parts.back()[1] = s;
     } else {
@@ -109,7 +109,7 @@ LineKind kindOf(const SplitCount& a, const SplitCount& b) {
   return LineKind::kUnknown;
 }
 
-Seam seamOf(const Geos& geos, const std::vector<SeenPlane>& planes, int i, int j) {
+Seam seamOf(const Geos& geos, const std::vector<SeenPlane>& planes, int i, int j, double gap) {
   const SeenPlane& a = planes[static_cast<std::size_t>(i)];
   const SeenPlane& b = planes[static_cast<std::size_t>(j)];
   Seam seam;
@@ -120,22 +120,22 @@ Seam seamOf(const Geos& geos, const std::vector<SeenPlane>& planes, int i, int j
   seam.origin = b.plane.project(a.plane.project(0.5 * (a.box.center() + b.box.center())));
   const double half = 0.5 * (a.box.diagonal().norm() + b.box.diagonal().norm()) + 1.0;
   const Interval range{-half, half};
-  seam.intervals = common(touching(geos, a, seam, range), touching(geos, b, seam, range));
+  seam.intervals = common(touching(geos, a, seam, range, gap), touching(geos, b, seam, range, gap));
   return seam;
 }
 
 }  // namespace
 
-std::vector<Seam> seams(const Geos& geos, const std::vector<SeenPlane>& planes) {
+std::vector<Seam> seams(const Geos& geos, const std::vector<SeenPlane>& planes, double gap) {
   std::vector<Seam> result;
   for (std::size_t i = 0; i < planes.size(); ++i) {
     for (std::size_t j = i + 1; j < planes.size(); ++j) {
       if (std::abs(planes[i].plane.normal().dot(planes[j].plane.normal())) > kOrthogonal) continue;
       Eigen::AlignedBox3d grown = planes[i].box;
-      grown.extend(grown.max() + Eigen::Vector3d::Constant(kTouch));
-      grown.extend(grown.min() - Eigen::Vector3d::Constant(kTouch));
+      grown.extend(grown.max() + Eigen::Vector3d::Constant(2.0 * gap));
+      grown.extend(grown.min() - Eigen::Vector3d::Constant(2.0 * gap));
       if (!grown.intersects(planes[j].box)) continue;
-      Seam seam = seamOf(geos, planes, static_cast<int>(i), static_cast<int>(j));
+      Seam seam = seamOf(geos, planes, static_cast<int>(i), static_cast<int>(j), gap);
       if (!seam.intervals.empty()) result.push_back(std::move(seam));
     }
   }
@@ -149,8 +149,9 @@ std::vector<SeenLine> seenLines(const std::vector<SeenPlane>& planes,
   for (const Seam& seam : seams) {
     const SeenPlane& a = planes[static_cast<std::size_t>(seam.planes[0])];
     const SeenPlane& b = planes[static_cast<std::size_t>(seam.planes[1])];
+    if (isBarelySeen(a, params) || isBarelySeen(b, params)) continue;
     for (const Interval& interval : seam.intervals) {
-      for (const Interval& part : seenParts(a, b, seam, interval, params.cell)) {
+      for (const Interval& part : seenParts(a, b, seam, interval, params)) {
         const SplitCount on_a = pixelsNear(a, b.plane, seam, part, params.reach);
         const SplitCount on_b = pixelsNear(b, a.plane, seam, part, params.reach);
         if (on_a.total() + on_b.total() < enough) continue;
@@ -160,6 +161,33 @@ std::vector<SeenLine> seenLines(const std::vector<SeenPlane>& planes,
         result.push_back({seam.planes, seam.origin + part[0] * seam.direction,
                           seam.origin + part[1] * seam.direction, kind});
       }
+    }
+  }
+  return result;
+}
+
+std::vector<SeenLine> restOfSeams(const std::vector<Seam>& seams,
+                                  const std::vector<SeenLine>& lines,
+                                  const GroundTruthParams& params) {
+  std::vector<SeenLine> result;
+  const double shortest = std::max(params.cell, params.near_gap) + kShortest;
+  for (const Seam& seam : seams) {
+    const auto add = [&](double from, double to) {
+      if (to - from < shortest) return;
+      result.push_back({seam.planes, seam.origin + from * seam.direction,
+                        seam.origin + to * seam.direction, LineKind::kUnknown});
+    };
+    for (const Interval& interval : seam.intervals) {
+      double from = interval[0];
+      for (const SeenLine& line : lines) {  // ascending along each seam
+        if (line.planes != seam.planes) continue;
+        const double start = seam.direction.dot(line.start - seam.origin);
+        const double end = seam.direction.dot(line.end - seam.origin);
+        if (start < interval[0] - kTouch || end > interval[1] + kTouch) continue;
+        add(from, start);
+        from = end;
+      }
+      add(from, interval[1]);
     }
   }
   return result;

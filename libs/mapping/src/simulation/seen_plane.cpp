@@ -49,9 +49,17 @@ std::vector<std::size_t> groups(const Geos& geos, const World& world, const std:
 
 }  // namespace
 
-bool SeenPlane::seenNear(const Eigen::Vector3d& point) const {
+bool SeenPlane::seenNear(const Eigen::Vector3d& point, const GroundTruthParams& params) const {
+  const int radius = std::max(1, closingRadius(params));
   return std::any_of(coverages.begin(), coverages.end(),
-                     [&](const Coverage* coverage) { return coverage->seenNear(point); });
+                     [&](const Coverage* coverage) { return coverage->seenNear(point, radius); });
+}
+
+Eigen::Vector3d SeenPlane::someSeenPoint() const {
+  Eigen::Vector3d result = Eigen::Vector3d::Zero();
+  coverages.front()->forEachSeen(
+      [&](const Eigen::Vector3d& centre, std::uint32_t) { result = centre; });
+  return result;
 }
 
 std::vector<SeenPlane> seenPlanes(const Geos& geos, const World& world, const SeenSides& sides,
@@ -72,10 +80,12 @@ std::vector<SeenPlane> seenPlanes(const Geos& geos, const World& world, const Se
       outlines.push_back(outlineOf(geos, world, numbers[i], plane.plane));
       for (const auto& vertex : faceOf(world, numbers[i]).outer) plane.box.extend(vertex);
     }
-    if (plane.pixels < static_cast<std::uint64_t>(params.min_pixels)) continue;
+    if (plane.sides.empty()) continue;  // of an earlier group
     plane.outline = geos.unionOf(geos.collection(std::move(outlines)));
     result.push_back(std::move(plane));
   }
+  std::stable_partition(result.begin(), result.end(),
+                        [&](const SeenPlane& plane) { return !isBarelySeen(plane, params); });
   return result;
 }
 
@@ -88,9 +98,8 @@ std::vector<Polygon2d> seenPolygons(const Geos& geos, const SeenPlane& plane,
   }
   CellMask mask(low, high);
   for (const Coverage* coverage : plane.coverages) coverage->addTo(mask);
-  const int radius = static_cast<int>(std::lround(params.closing / params.cell));
   std::vector<Geos::Geometry> cells;
-  for (const Polygon2d& run : mask.closed(radius).runs(params.cell)) {
+  for (const Polygon2d& run : mask.closed(closingRadius(params)).runs(params.cell)) {
     cells.push_back(geos.polygon(run));
   }
   const auto closed = geos.unionOf(geos.collection(std::move(cells)));

@@ -61,6 +61,17 @@ struct PlanarMapCorner {
   std::vector<double> observations;  ///< timestamps of the scans that saw it [s]
 };
 
+/// True elements of which too little was seen to ask anyone for them: planes and corners by too few
+/// pixels, stretches of lines where one side was not seen at all. Simulated truth states them, so
+/// that finding one counts neither as right nor as wrong.
+struct BarelySeen {
+  std::vector<PlanarMapPlane> planes;  ///< ids go on after those of PlanarMap::planes
+  std::vector<PlanarMapLine> lines;    ///< of planes of either list, as corners
+  std::vector<PlanarMapCorner> corners;
+
+  bool empty() const { return planes.empty() && lines.empty() && corners.empty(); }
+};
+
 /// Planar abstraction of a scene or a scan: the contents of planar_map.json
 /// (docs/planar_map.schema.json).
 struct PlanarMap {
@@ -69,6 +80,7 @@ struct PlanarMap {
   std::vector<PlanarMapFamily> families;
   std::vector<PlanarMapLine> lines;
   std::vector<PlanarMapCorner> corners;
+  BarelySeen barely_seen;
 };
 
 }  // namespace opp::mapping

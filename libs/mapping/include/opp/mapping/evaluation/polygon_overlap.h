@@ -19,6 +19,11 @@ double areaOf(const std::vector<PlanarPolygon>& polygons);
 double sharedArea(const Plane& plane, const std::vector<PlanarPolygon>& on_plane,
                   const std::vector<PlanarPolygon>& others);
 
+/// Distance within the plane of a point's projection from the nearest polygon [m]: 0 inside of one
+/// and in holes, infinite if there is none. O(vertices).
+double distanceTo(const Plane& plane, const std::vector<PlanarPolygon>& on_plane,
+                  const Eigen::Vector3d& point);
+
 inline constexpr int kOverlapSamples = 2000;
 
 }  // namespace opp::mapping

@@ -51,8 +51,9 @@ struct PrimitiveErrorParams {
 /// Elements are the same if their geometry and their extents agree (PrimitiveErrorParams):
 /// - planes: angle between normals, which point to the seen side, so that the two sides of a wall
 ///   are two planes; offset = distance of the estimated plane from the centroid of the true
-///   polygons; overlap = area that the polygons share. Without polygons on one side, geometry
-///   alone.
+///   polygons; overlap = area that the polygons share. An estimated plane without polygons must
+///   have its centroid within `max_offset` of the true ones; a true one without is compared by
+///   geometry alone.
 /// - lines: one for each pair of planes, with all its segments. Angle between directions (without
 ///   sign); distance of the estimated line from the middle of the shared stretch; overlap = length
 ///   that the segments share along the true line.
@@ -63,11 +64,15 @@ struct PrimitiveErrorParams {
 /// true plane or line without a match is still found if it is the same as an estimated one that is
 /// matched to a coplanar or collinear other (two table tops of equal height may share a plane).
 ///
+/// An estimated element that is the same as none of these, but lies on one of
+/// PlanarMap::barely_seen, counts neither as right nor as wrong: a plane by the rules above but for
+/// min_coverage, a line with min_overlap of its length along the rest of a seam, a corner as above.
+///
 /// Orthogonality is claimed between planes by `orthogonal_to`, by lines and by corners. A claim is
-/// checked if both planes are the same as true ones, and false if those are not orthogonal within
-/// `false_orthogonality`.
-/// \param gt_from_est brings the estimate into the frame of the truth.
-/// \throws std::invalid_argument if a parameter is out of range or gt_from_est is not finite.
+/// checked if both planes are the same as true ones (matched, duplicate or barely seen), and false
+/// if those are not orthogonal within `false_orthogonality`. \param gt_from_est brings the estimate
+/// into the frame of the truth. \throws std::invalid_argument if a parameter is out of range or
+/// gt_from_est is not finite.
 PrimitiveTallies comparePrimitives(
     const PlanarMap& ground_truth, const PlanarMap& estimate,
     const PrimitiveErrorParams& params = {},

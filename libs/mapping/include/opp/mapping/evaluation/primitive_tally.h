@@ -16,15 +16,22 @@ struct PrimitiveTally {
   std::size_t est = 0;          ///< estimated elements
   std::size_t gt_found = 0;     ///< true elements that were found
   std::size_t est_correct = 0;  ///< estimated elements that are a true one
-  std::vector<double> angles;   ///< of each matched pair [rad]
+  /// Estimated elements that are a true one which was barely seen: neither right nor wrong.
+  std::size_t est_neutral = 0;
+  double gt_size = 0.0;        ///< of all true elements: pixels of planes, metres of lines
+  double gt_size_found = 0.0;  ///< of those that were found
+  std::vector<double> angles;  ///< of each matched pair [rad]
   /// Of each matched pair [m]: planes: offset at the true centroid; lines and corners: distance.
   std::vector<double> distances;
   std::vector<double> near_distances;  ///< those of corners near the sensor; see near_range
 
-  /// est_correct / est; nothing if nothing was estimated.
+  /// est_correct / (est − est_neutral); nothing if nothing was estimated that counts.
   std::optional<double> precision() const;
   /// gt_found / gt; nothing if nothing is true.
   std::optional<double> recall() const;
+  /// gt_size_found / gt_size: recall where each element weighs as much as was seen of it; nothing
+  /// if nothing with a size is true.
+  std::optional<double> recallBySize() const;
   void add(const PrimitiveTally& other);
 };
 
