@@ -21,18 +21,41 @@ nlohmann::json rowsOf(const test::TempFolder& output, std::vector<std::string> a
   return nlohmann::json::parse(test::readFile(output / "evaluation.json")).at("rows");
 }
 
+const std::string kBuild =
+    std::filesystem::path(test::appPath("opp-simulate")).parent_path().string();
+
 TEST(EvaluateScript, SimulatesAndSaysWhatWasSeen) {
-  const std::string build =
-      std::filesystem::path(test::appPath("opp-simulate")).parent_path().string();
   const test::TempFolder output;
   const auto rows = rowsOf(output,
-                           {"--build", build, "--frames", "2", "--scenes", "cube", "--sensors",
+                           {"--build", kBuild, "--frames", "2", "--scenes", "cube", "--sensors",
                             "ideal", "--only", "simulate cube"},
                            0);
   ASSERT_EQ(rows.size(), 1u);
   EXPECT_EQ(rows[0].at("frames"), 2);
   EXPECT_GT(rows[0].at("planes"), 0);
   EXPECT_NE(test::readFile(output / "evaluation.md").find("| cube ideal | 2 |"), std::string::npos);
+}
+
+TEST(EvaluateScript, MapsAndDetectsAndKeepsTheOrderOfRowsWithSeveralJobs) {
+  const test::TempFolder output;
+  const auto rows = rowsOf(
+      output,
+      {"--build", kBuild,     "--rate",          "10",     "--frames",  "3",      "--detect-frames",
+       "2",       "--scenes", "blank",           "room",   "--sensors", "kinect", "--jobs",
+       "2",       "--only",   "map blank robot", "--only", "map room",  "--only", "detect room"},
+      0);
+  ASSERT_EQ(rows.size(), 3u);
+  EXPECT_EQ(rows[0].at("table"), "map");
+  EXPECT_EQ(rows[0].at("name"), "room kinect");
+  EXPECT_EQ(rows[0].at("frames"), 3);
+  EXPECT_EQ(rows[0].at("used"), 3);
+  EXPECT_LT(rows[0].at("ate_rmse_m"), 0.05);
+  EXPECT_GT(rows[0].at("planes_recall"), 0.0);
+  EXPECT_EQ(rows[1].at("table"), "detect");
+  EXPECT_EQ(rows[1].at("frames"), 2);
+  EXPECT_GT(rows[1].at("planes_precision"), 0.0);
+  EXPECT_GT(rows[1].at("median_ms"), 0.0);
+  EXPECT_EQ(rows[2].at("name"), "blank robot");
 }
 
 TEST(EvaluateScript, ProgramsThatAreMissingMakeRowsThatSaySo) {
