@@ -2,15 +2,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Aligns pairs of a rawlog's scans without initial guess and compares with the true poses: recall
 // and false accepts against overlap. Detection is done once a scan, before, and is not timed.
+// Beside it, what dense ICP makes of the pair when it is started at the true pose: what the
+// sensor's distortion and the truth's own error leave for anyone. With --other: pairs of scans of
+// two places that have nothing in common; each pose that is accepted is wrong.
 #include "opp/mapping/evaluation/time_association.h"
 #include "opp/mapping/io/tum_trajectory.h"
 #include "opp/mapping/pipeline/feature_stream.h"
 #include "opp/mapping/registration/align_globally.h"
+#include "opp/mapping/registration/corner_icp.h"
 
 #include "common/flags.h"
 #include "common/run_main.h"
 #include "registration/voxel_index.h"
 
+#include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 
 #include <ctime>
@@ -27,12 +32,14 @@ struct Params {
   PrimitiveParams primitives;
   GlobalAlignmentParams alignment;
   AssociationParams association;
+  CornerIcpParams icp;
 
   template <typename Self, typename F>
   static void visitSections(Self&& p, F&& f) {
     PrimitiveParams::visitSections(p.primitives, f);
     f(p.alignment);
     f(p.association);
+    f(p.icp);
   }
 };
 
@@ -49,9 +56,14 @@ struct PairResult {
   double angle = 0.0;         ///< error [rad]
   double distance = 0.0;      ///< error [m]
   double milliseconds = 0.0;  ///< CPU time
+  double doubt = 0.0;         ///< squared error over covariance; 6 on average if both are right
+  bool icp_good = false;      ///< dense ICP that starts at the true pose ends near it
 
   bool accepted() const { return alignment.outcome == AlignmentOutcome::kAligned; }
-  bool good() const { return accepted() && angle <= degToRad(1.0) && distance <= 0.03; }
+  bool good() const { return accepted() && near(angle, distance); }
+  static bool near(double angle, double distance) {
+    return angle <= degToRad(1.0) && distance <= 0.03;
+  }
   bool wrong() const { return accepted() && (angle > degToRad(5.0) || distance > 0.10); }
 };
 
@@ -108,16 +120,22 @@ PairResult alignPair(const std::vector<Frame>& frames, std::size_t target, std::
   result.source = source;
   judgeTruth(frames[target], frames[source], result);
   const std::clock_t start = std::clock();
-  result.alignment =
-      alignGlobally(frames[target].features, frames[source].features, params.alignment);
+  result.alignment = alignGlobally(frames[target].features, frames[source].features,
+                                   params.primitives.sensor, params.alignment);
   result.milliseconds = 1e3 * static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
   const Eigen::Isometry3d truth =
       frames[target].map_from_body.inverse() * frames[source].map_from_body;
+  const CornerIcpResult icp =
+      cornerIcp(frames[target].features.cloud_in_body, frames[source].features.cloud_in_body, {},
+                truth, params.icp);
+  const Vector6d icp_error = difference(truth, icp.target_from_source);
+  result.icp_good = PairResult::near(icp_error.head<3>().norm(), icp_error.tail<3>().norm());
   // For pairs that are not accepted: the error of the best hypothesis, to see what is missing.
   if (result.alignment.hypotheses.empty()) return result;
   const Vector6d error = difference(truth, result.alignment.hypotheses.front().target_from_source);
   result.angle = error.head<3>().norm();
   result.distance = error.tail<3>().norm();
+  if (result.accepted()) result.doubt = error.dot(result.alignment.covariance.ldlt().solve(error));
   return result;
 }
 
@@ -155,7 +173,7 @@ void writeCsv(const std::string& file, const std::vector<Frame>& frames,
               const std::vector<PairResult>& results) {
   std::ofstream csv(file);
   csv << "target,source,overlap,six_dof,outcome,dof,angle_deg,distance_m,score,conflict,"
-         "clarity,corners,ms\n";
+         "clarity,confirmation,corners,doubt,icp_good,ms\n";
   for (const PairResult& r : results) {
     const GlobalAlignment& a = r.alignment;
     csv << frames[r.target].features.scan_index << ',' << frames[r.source].features.scan_index
@@ -163,54 +181,43 @@ void writeCsv(const std::string& file, const std::vector<Frame>& frames,
         << a.observed_dof << ',' << radToDeg(r.angle) << ',' << r.distance << ','
         << (a.hypotheses.empty() ? 0.0 : a.hypotheses[0].score) << ','
         << (a.hypotheses.empty() ? 0.0 : a.hypotheses[0].conflict) << ',' << a.clarity << ','
-        << a.corner_matches.size() << ',' << r.milliseconds << '\n';
+        << a.confirmation << ',' << a.corner_matches.size() << ',' << r.doubt << ',' << r.icp_good
+        << ',' << r.milliseconds << '\n';
   }
 }
 
 template <typename Filter>
 void printRow(const std::string& name, const std::vector<PairResult>& results, Filter filter) {
-  int count = 0, good = 0, accepted = 0, wrong = 0;
-  std::array<int, 4> outcomes{};
-  std::vector<double> times;
+  int count = 0, good = 0, accepted = 0, wrong = 0, icp_good = 0;
+  std::array<int, 5> outcomes{};
+  std::vector<double> times, doubts;
   for (const PairResult& r : results) {
     if (!filter(r)) continue;
     ++count;
     good += r.good();
+    icp_good += r.icp_good;
     accepted += r.accepted();
     wrong += r.wrong();
     ++outcomes[static_cast<std::size_t>(r.alignment.outcome)];
     times.push_back(r.milliseconds);
+    if (r.accepted()) doubts.push_back(r.doubt);
   }
   if (count == 0) return;
   std::sort(times.begin(), times.end());
+  std::sort(doubts.begin(), doubts.end());
   std::cout << std::setw(22) << name << std::setw(7) << count << std::setw(7) << good
             << std::setw(8) << std::fixed << std::setprecision(1) << 100.0 * good / count
-            << std::setw(9) << accepted << std::setw(7) << wrong << std::setw(10) << outcomes[1]
-            << std::setw(13) << outcomes[2] << std::setw(11) << outcomes[3] << std::setw(8)
-            << times[times.size() / 2] << std::setw(8) << times.back() << '\n';
+            << std::setw(6) << icp_good << std::setw(9) << accepted << std::setw(7) << wrong
+            << std::setw(10) << outcomes[1] << std::setw(13) << outcomes[2] << std::setw(12)
+            << outcomes[4] << std::setw(11) << outcomes[3] << std::setw(8)
+            << times[times.size() / 2] << std::setw(8) << times.back() << std::setw(8)
+            << (doubts.empty() ? 0.0 : doubts[doubts.size() / 2]) << '\n';
 }
 
-void run(apps::CommandLine& line) {
-  TCLAP::ValueArg<std::string> rawlog("i", "input", "Rawlog", true, "", "FILE.rawlog", line);
-  TCLAP::ValueArg<std::string> gt("", "gt", "True poses", true, "", "FILE.tum", line);
-  TCLAP::ValueArg<int> every("", "every", "Each K-th frame", false, 1, "K", line);
-  TCLAP::ValueArg<std::string> pairs("", "pairs", "Pairs of frames; default: all", false, "",
-                                     "FILE.txt", line);
-  TCLAP::ValueArg<std::string> csv("", "csv", "One line a pair", false, "", "FILE.csv", line);
-  apps::ParameterFlags parameters(line);
-  line.parse();
-  Params params;
-  parameters.applyTo(params);
-  const auto frames = readFrames(rawlog.getValue(), gt.getValue(),
-                                 static_cast<std::size_t>(every.getValue()), params);
-  std::vector<PairResult> results;
-  for (const auto& [i, j] : pairsOf(pairs.getValue(), frames)) {
-    results.push_back(alignPair(frames, i, j, params));
-  }
-  if (csv.isSet()) writeCsv(csv.getValue(), frames, results);
-  std::cout
-      << "               overlap  pairs   good  recall accepted  wrong ambiguous insufficient "
-         "no-overlap  ms p50  ms max\n";
+void printTable(const std::vector<PairResult>& results) {
+  std::cout << "               overlap  pairs   good  recall   icp accepted  wrong ambiguous "
+               "insufficient "
+               "unconfirmed no-overlap  ms p50  ms max   doubt\n";
   for (const double low : {0.0, 0.3, 0.5, 0.7}) {
     const double high = low < 0.3 ? 0.3 : low < 0.5 ? 0.5 : low < 0.7 ? 0.7 : 2.0;
     std::ostringstream name;
@@ -221,6 +228,58 @@ void run(apps::CommandLine& line) {
   printRow(">= 0.3", results, [](const PairResult& r) { return r.overlap >= 0.3; });
   printRow(">= 0.3 and 6 dof", results,
            [](const PairResult& r) { return r.overlap >= 0.3 && r.six_dof; });
+}
+
+/// Counts what is accepted of all pairs of two places.
+void printStrangers(const std::vector<Frame>& frames, const std::string& rawlog, std::size_t every,
+                    const Params& params) {
+  RawlogOptions options;
+  options.every = every;
+  RawlogReader reader(rawlog, options);
+  FeatureStream stream(reader, params.primitives, 0);
+  std::array<int, 5> outcomes{};
+  while (auto other = stream.next()) {
+    for (const Frame& frame : frames) {
+      const GlobalAlignment alignment = alignGlobally(frame.features, other->features,
+                                                      params.primitives.sensor, params.alignment);
+      ++outcomes[static_cast<std::size_t>(alignment.outcome)];
+      if (alignment.outcome != AlignmentOutcome::kAligned) continue;
+      std::cout << "accepted: " << frame.features.scan_index << " with "
+                << other->features.scan_index << ", overlap " << alignment.overlap << ", clarity "
+                << alignment.clarity << ", confirmation " << alignment.confirmation << '\n';
+    }
+  }
+  for (std::size_t k = 0; k < outcomes.size(); ++k) {
+    std::cout << std::setw(7) << outcomes[k] << "  " << describe(static_cast<AlignmentOutcome>(k))
+              << '\n';
+  }
+}
+
+void run(apps::CommandLine& line) {
+  TCLAP::ValueArg<std::string> rawlog("i", "input", "Rawlog", true, "", "FILE.rawlog", line);
+  TCLAP::ValueArg<std::string> gt("", "gt", "True poses", true, "", "FILE.tum", line);
+  TCLAP::ValueArg<int> every("", "every", "Each K-th frame", false, 1, "K", line);
+  TCLAP::ValueArg<std::string> pairs("", "pairs", "Pairs of frames; default: all", false, "",
+                                     "FILE.txt", line);
+  TCLAP::ValueArg<std::string> csv("", "csv", "One line a pair", false, "", "FILE.csv", line);
+  TCLAP::ValueArg<std::string> other("", "other", "Each frame with each of another place", false,
+                                     "", "FILE.rawlog", line);
+  apps::ParameterFlags parameters(line);
+  line.parse();
+  Params params;
+  parameters.applyTo(params);
+  const auto frames = readFrames(rawlog.getValue(), gt.getValue(),
+                                 static_cast<std::size_t>(every.getValue()), params);
+  if (other.isSet()) {
+    printStrangers(frames, other.getValue(), static_cast<std::size_t>(every.getValue()), params);
+    return;
+  }
+  std::vector<PairResult> results;
+  for (const auto& [i, j] : pairsOf(pairs.getValue(), frames)) {
+    results.push_back(alignPair(frames, i, j, params));
+  }
+  if (csv.isSet()) writeCsv(csv.getValue(), frames, results);
+  printTable(results);
 }
 
 }  // namespace

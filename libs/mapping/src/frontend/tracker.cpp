@@ -65,7 +65,8 @@ MatchResult Tracker::localize(const ScanFeatures& scan, const PosePrior& predict
 }
 
 MatchResult Tracker::relocalize(const ScanFeatures& scan, const Keyframe& newest) const {
-  const GlobalAlignment alignment = alignGlobally(newest.features, scan, params_.global_alignment);
+  const GlobalAlignment alignment =
+      alignGlobally(newest.features, scan, params_.primitives.sensor, params_.global_alignment);
   if (alignment.outcome != AlignmentOutcome::kAligned) return {};
   // A start without weight: the alignment saw the same scan, so its information must not count
   // twice.

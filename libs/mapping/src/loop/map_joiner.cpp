@@ -67,8 +67,8 @@ double conflictOf(const MapState& a, const MapState& b, const Eigen::Isometry3d&
     const int near = nearestView(a, a_from_b * of_b.viewCentre(), params.loop.search_distance);
     if (near < 0) continue;
     const Keyframe& of_a = a.keyframes[Index(near)];
-    const ScanModel target(of_a.features, params.global_alignment);
-    const ScanModel source(of_b.features, params.global_alignment);
+    const ScanModel target(of_a.features, params.primitives.sensor, params.global_alignment);
+    const ScanModel source(of_b.features, params.primitives.sensor, params.global_alignment);
     const Eigen::Isometry3d target_from_source =
         of_a.map_from_body.inverse() * a_from_b * of_b.map_from_body;
     const Verification seen = verifyPose(target, source, target_from_source,

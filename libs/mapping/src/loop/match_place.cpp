@@ -45,8 +45,8 @@ std::optional<PlaceMatch> matchPlace(const MapState& map, int keyframe, const Sc
     const MatchResult match = matchScan(scan, local, *expected, params.registration);
     if (match.overlap >= params.loop.min_overlap) return describe(map, keyframe, match);
   }
-  const GlobalAlignment alignment =
-      alignGlobally(keyframeOf(map, keyframe).features, scan, params.global_alignment);
+  const GlobalAlignment alignment = alignGlobally(
+      keyframeOf(map, keyframe).features, scan, params.primitives.sensor, params.global_alignment);
   if (alignment.outcome != AlignmentOutcome::kAligned) return std::nullopt;
   // A start without weight: the alignment saw the same scan, so its information must not count
   // twice.

@@ -2,11 +2,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "registration/refine_pose.h"
 
+#include "opp/mapping/registration/plane_samples.h"
+
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <vector>
 
 namespace opp::mapping {
@@ -18,12 +21,13 @@ constexpr double kKernelWidth = 2.5;
 constexpr int kAnnealedSteps = 8;
 constexpr int kFinalSteps = 4;
 
-/// A sample of the source on a surface of the target.
+/// A sample of one scan on a surface of the other, in the target's axes.
 struct Match {
-  Eigen::Vector3d lever;  ///< from the source's origin to the sample, in the target's axes [m]
+  Eigen::Vector3d lever;  ///< from the source's origin to the sample [m]
   Eigen::Vector3d normal;
-  double residual;  ///< [m]
+  double residual;  ///< [m]; grows when the source moves along the normal
   double weight;    ///< robust, over variance [1/m²]
+  int surface;      ///< plane of the target, of the source after these; −1: none
 };
 
 class Refiner {
@@ -35,17 +39,25 @@ class Refiner {
         pose_(pose),
         min_cosine_(static_cast<float>(std::cos(params.normal_gate))) {}
 
-  RefinedPose run() {
-    double tolerance = 0.5 * target_.voxels.cell();
+  void refine() {
+    double tolerance = 0.5 * std::max(target_.voxels.cell(), source_.voxels.cell());
     for (int k = 0; k < kAnnealedSteps; ++k, tolerance *= 0.5) step(tolerance);
     for (int k = 0; k < kFinalSteps; ++k) step(0.0);
+  }
+
+  RefinedPose result() {
     match(0.0);
     RefinedPose result;
     result.target_from_source = pose_;
     result.observability = observability();
+    // Samples of one plane share part of their error.
+    std::map<int, double> count;
+    for (const Match& m : matches_) count[m.surface] += 1.0;
     for (const Match& m : matches_) {
+      const double all = m.surface < 0 ? 1.0 : count[m.surface];
+      const double worth = std::min(all, all / (1.0 + (all - 1.0) * target_.sample_correlation));
       const Vector6d j = jacobian(m, Eigen::Vector3d::Zero(), 1.0);
-      result.information.noalias() += m.weight * j * j.transpose();
+      result.information.noalias() += m.weight * worth / all * j * j.transpose();
     }
     return result;
   }
@@ -72,8 +84,14 @@ class Refiner {
     pose_ = retract(pose_, -hessian.ldlt().solve(gradient));
   }
 
+  /// While far off, the samples of the smaller scan do.
   void match(double tolerance) {
     matches_.clear();
+    if (tolerance <= 0.0 || source_.area <= target_.area) matchSourceSamples(tolerance);
+    if (tolerance <= 0.0 || source_.area > target_.area) matchTargetSamples(tolerance);
+  }
+
+  void matchSourceSamples(double tolerance) {
     const Eigen::Isometry3f pose = pose_.cast<float>();
     for (const std::uint32_t i : source_.samples) {
       const std::int32_t nearest =
@@ -84,11 +102,38 @@ class Refiner {
       const Plane surface = target_.surfaceAt(k);
       const Eigen::Vector3d lever = pose_.linear() * source_.cloud().points[i].cast<double>();
       const double residual = surface.signedDistance(lever + pose_.translation());
-      const double variance = std::pow(target_.cloud().sigmas[k], 2) +
-                              std::pow(source_.cloud().sigmas[i], 2) + tolerance * tolerance;
-      const double sigmas = residual * residual / (variance * kKernelWidth * kKernelWidth);
-      matches_.push_back({lever, surface.normal(), residual, 1.0 / (variance * (1.0 + sigmas))});
+      matches_.push_back({lever, surface.normal(), residual,
+                          weight(residual, target_.sigmas[k], source_.sigmas[i], tolerance),
+                          target_.labelOf(k)});
     }
+  }
+
+  /// The same with the scans' parts exchanged: the surface moves instead of the sample.
+  void matchTargetSamples(double tolerance) {
+    const Eigen::Isometry3d source_from_target = pose_.inverse();
+    const Eigen::Isometry3f pose = source_from_target.cast<float>();
+    const int target_planes = static_cast<int>(target_.primitives().planes.size());
+    for (const std::uint32_t i : target_.samples) {
+      const std::int32_t nearest =
+          source_.voxels.near(pose * target_.cloud().points[i],
+                              pose.linear() * target_.cloud().normals[i], min_cosine_);
+      if (nearest < 0) continue;
+      const auto k = static_cast<std::uint32_t>(nearest);
+      const Plane surface = source_.surfaceAt(k);
+      const Eigen::Vector3d point = target_.cloud().points[i].cast<double>();
+      const double residual = -surface.signedDistance(source_from_target * point);
+      const int label = source_.labelOf(k);
+      matches_.push_back({point - pose_.translation(), pose_.linear() * surface.normal(), residual,
+                          weight(residual, source_.sigmas[k], target_.sigmas[i], tolerance),
+                          label < 0 ? -1 : target_planes + label});
+    }
+  }
+
+  static double weight(double residual, float sigma_a, float sigma_b, double tolerance) {
+    const auto a = static_cast<double>(sigma_a), b = static_cast<double>(sigma_b);
+    const double variance = a * a + b * b + tolerance * tolerance;
+    const double sigmas = residual * residual / (variance * kKernelWidth * kKernelWidth);
+    return 1.0 / (variance * (1.0 + sigmas));
   }
 
   Vector6d observability() const {
@@ -118,7 +163,15 @@ class Refiner {
 RefinedPose refinePose(const ScanModel& target, const ScanModel& source,
                        const Eigen::Isometry3d& target_from_source,
                        const GlobalAlignmentParams& params) {
-  return Refiner(target, source, target_from_source, params).run();
+  Refiner refiner(target, source, target_from_source, params);
+  refiner.refine();
+  return refiner.result();
+}
+
+RefinedPose informationAt(const ScanModel& target, const ScanModel& source,
+                          const Eigen::Isometry3d& target_from_source,
+                          const GlobalAlignmentParams& params) {
+  return Refiner(target, source, target_from_source, params).result();
 }
 
 }  // namespace opp::mapping

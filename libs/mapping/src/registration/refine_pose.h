@@ -21,10 +21,15 @@ struct RefinedPose {
 };
 
 /// Point-to-plane refinement (robust, annealed) of a pose that is right to about a search cell: the
-/// verification samples of the source against the planes that hold the target's samples nearby.
+/// verification samples of each scan against the planes that hold the other's samples nearby.
 /// Directions that nothing fixes stay as they are.
 RefinedPose refinePose(const ScanModel& target, const ScanModel& source,
                        const Eigen::Isometry3d& target_from_source,
                        const GlobalAlignmentParams& params);
+
+/// What the shared surfaces tell about a pose that stays as it is.
+RefinedPose informationAt(const ScanModel& target, const ScanModel& source,
+                          const Eigen::Isometry3d& target_from_source,
+                          const GlobalAlignmentParams& params);
 
 }  // namespace opp::mapping

@@ -34,9 +34,11 @@ RotationCandidate fitted(const ScanModel& target, const ScanModel& source,
   RotationCandidate result;
   for (const PlaneDirection& s : source.directions) {
     for (const PlaneDirection& t : target.directions) {
-      if (t.normal.dot(rotation * s.normal) < min_cosine) continue;
+      const Eigen::Vector3d moved = rotation * s.normal;
+      if (!target.alike(t.normal, moved, min_cosine)) continue;
       const double area = std::min(s.area, t.area);
-      correlation += area * t.normal * s.normal.transpose();
+      const double sign = t.normal.dot(moved) < 0.0 ? -1.0 : 1.0;
+      correlation += sign * area * t.normal * s.normal.transpose();
       result.area += area;
     }
   }
@@ -46,6 +48,16 @@ RotationCandidate fitted(const ScanModel& target, const ScanModel& source,
   result.target_from_source =
       svd.matrixU() * Eigen::Vector3d(1.0, 1.0, sign).asDiagonal() * svd.matrixV().transpose();
   return result;
+}
+
+/// Normals of a scan's plane directions, both of each if their sign tells nothing.
+std::vector<Eigen::Vector3d> normalsOf(const ScanModel& scan) {
+  std::vector<Eigen::Vector3d> normals;
+  for (const PlaneDirection& d : scan.directions) {
+    normals.push_back(d.normal);
+    if (!scan.sided) normals.emplace_back(-d.normal);
+  }
+  return normals;
 }
 
 class RotationPool {
@@ -92,7 +104,7 @@ std::vector<RotationCandidate> rotationCandidates(const ScanModel& target, const
                                                   const GlobalAlignmentParams& params) {
   RotationPool pool(target, source, params.direction_tolerance);
   const auto& t = target.directions;
-  const auto& s = source.directions;
+  const std::vector<Eigen::Vector3d> s = normalsOf(source);
   for (std::size_t a = 0; a < t.size(); ++a) {
     for (std::size_t b = a + 1; b < t.size(); ++b) {
       if (t[a].normal.cross(t[b].normal).norm() < kMinSine) continue;
@@ -101,10 +113,8 @@ std::vector<RotationCandidate> rotationCandidates(const ScanModel& target, const
       for (std::size_t c = 0; c < s.size(); ++c) {
         for (std::size_t d = 0; d < s.size(); ++d) {
           if (c == d) continue;
-          if (std::abs(angleOf(s[c].normal, s[d].normal) - angle) > params.direction_tolerance) {
-            continue;
-          }
-          pool.add(target_frame * frameOf(s[c].normal, s[d].normal).transpose());
+          if (std::abs(angleOf(s[c], s[d]) - angle) > params.direction_tolerance) continue;
+          pool.add(target_frame * frameOf(s[c], s[d]).transpose());
         }
       }
     }

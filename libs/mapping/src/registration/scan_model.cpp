@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "registration/scan_model.h"
 
+#include "opp/mapping/registration/plane_samples.h"
+
 #include "registration/normal_space_sampling.h"
 
 #include <algorithm>
@@ -11,7 +13,7 @@
 namespace opp::mapping {
 namespace {
 
-std::vector<PlaneDirection> directionsOf(const std::vector<PlanePrimitive>& planes,
+std::vector<PlaneDirection> directionsOf(const std::vector<PlanePrimitive>& planes, bool sided,
                                          const GlobalAlignmentParams& params) {
   std::vector<int> by_area(planes.size());
   std::iota(by_area.begin(), by_area.end(), 0);
@@ -23,10 +25,12 @@ std::vector<PlaneDirection> directionsOf(const std::vector<PlanePrimitive>& plan
   for (const int p : by_area) {
     const Eigen::Vector3d& normal = planes[static_cast<std::size_t>(p)].plane.normal();
     auto same = std::find_if(directions.begin(), directions.end(), [&](const PlaneDirection& d) {
-      return d.normal.dot(normal) > min_cosine;
+      const double cosine = d.normal.dot(normal);
+      return (sided ? cosine : std::abs(cosine)) > min_cosine;
     });
     if (same == directions.end()) same = directions.insert(same, PlaneDirection{});
-    same->normal = (same->area * same->normal + area(p) * normal).normalized();
+    const double sign = same->normal.dot(normal) < 0.0 ? -1.0 : 1.0;
+    same->normal = (same->area * same->normal + sign * area(p) * normal).normalized();
     same->area += area(p);
     same->planes.push_back(p);
   }
@@ -50,14 +54,23 @@ std::vector<std::uint32_t> spread(const std::vector<std::uint32_t>& indices) {
 
 }  // namespace
 
-ScanModel::ScanModel(const ScanFeatures& scan, const GlobalAlignmentParams& params)
-    : features(scan),
-      directions(directionsOf(scan.primitives_in_body.planes, params)),
-      voxels(scan.cloud_in_body, params.cell_ratio * scan.cloud_in_body.spacing),
-      depth(scan.cloud_in_body),
-      samples(sampleNormalSpace(scan.cloud_in_body, static_cast<std::size_t>(params.samples))),
-      screening_samples(spread(sampleNormalSpace(
-          scan.cloud_in_body, static_cast<std::size_t>(params.screening_samples)))) {}
+ScanModel::ScanModel(const AlignmentInput& input, const SensorModel& sensor,
+                     const GlobalAlignmentParams& params)
+    : features(*input.features),
+      sided(input.sided),
+      area(static_cast<double>(cloud().size()) * cloud().spacing * cloud().spacing),
+      sample_correlation(sensor.noise_correlation),
+      directions(directionsOf(primitives().planes, input.sided, params)),
+      voxels(cloud(), params.cell_ratio * cloud().spacing, input.sided),
+      free_space(input.views),
+      samples(sampleNormalSpace(cloud(), static_cast<std::size_t>(params.samples))),
+      screening_samples(
+          spread(sampleNormalSpace(cloud(), static_cast<std::size_t>(params.screening_samples)))) {
+  sigmas.reserve(cloud().size());
+  for (std::size_t i = 0; i < cloud().size(); ++i) {
+    sigmas.push_back(std::sqrt(sampleVariance(cloud(), i, sensor)));
+  }
+}
 
 Plane ScanModel::surfaceAt(std::uint32_t sample) const {
   const int label = labelOf(sample);

@@ -2,12 +2,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "opp/mapping/core/scan_features.h"
+#include "opp/cloud/sensor_model.h"
+#include "opp/mapping/registration/alignment_input.h"
 #include "opp/mapping/registration/global_alignment_params.h"
 
-#include "registration/depth_map.h"
+#include "registration/free_space.h"
 #include "registration/voxel_index.h"
 
+#include <cmath>
 #include <cstdint>
 #include <vector>
 
@@ -23,20 +25,31 @@ struct PlaneDirection {
 /// A scan made ready for the many questions of global alignment. Refers to the features it was made
 /// of.
 struct ScanModel {
-  ScanModel(const ScanFeatures& features, const GlobalAlignmentParams& params);
+  ScanModel(const AlignmentInput& input, const SensorModel& sensor,
+            const GlobalAlignmentParams& params);
 
   const OrientedCloud& cloud() const { return features.cloud_in_body; }
   const Primitives& primitives() const { return features.primitives_in_body; }
   int labelOf(std::uint32_t sample) const { return primitives().labels[sample]; }
   /// Plane that holds the sample's surface: the fitted plane of its label, else its own tangent.
   Plane surfaceAt(std::uint32_t sample) const;
+  /// Do two normals, the second turned into the frame of the first, face the same way? Their sign
+  /// counts only if it tells the side from which the surface was seen.
+  bool alike(const Eigen::Vector3d& a, const Eigen::Vector3d& b, double min_cosine) const {
+    const double cosine = a.dot(b);
+    return (sided ? cosine : std::abs(cosine)) > min_cosine;
+  }
 
   const ScanFeatures& features;
+  bool sided;                              ///< the sign of normals has a meaning
+  double area;                             ///< of all samples [m²]
+  double sample_correlation;               ///< of the errors of samples on one plane
   std::vector<PlaneDirection> directions;  ///< largest area first
   VoxelIndex voxels;
-  DepthMap depth;
+  FreeSpace free_space;
   std::vector<std::uint32_t> samples;            ///< even over directions of normals, ascending
   std::vector<std::uint32_t> screening_samples;  ///< fewer, in an order fit for giving up early
+  std::vector<float> sigmas;                     ///< of each sample's offset along its normal [m]
 };
 
 }  // namespace opp::mapping

@@ -72,7 +72,9 @@ class TranslationSearch {
     const double min_cosine = std::cos(params_.direction_tolerance);
     for (const PlaneDirection& t : target_.directions) {
       for (const PlaneDirection& s : source_.directions) {
-        if (t.normal.dot(rotation_ * s.normal) > min_cosine) addOffsets(t, s, axisOf(t.normal));
+        if (target_.alike(t.normal, rotation_ * s.normal, min_cosine)) {
+          addOffsets(t, s, axisOf(t.normal));
+        }
       }
     }
     for (Axis& axis : axes_) {
@@ -199,8 +201,9 @@ bool compatibleCorners(const ScanModel& target, const Corner& target_corner,
                        const ScanModel& source, const Corner& source_corner,
                        const Eigen::Matrix3d& target_from_source,
                        const GlobalAlignmentParams& params) {
-  if (target_corner.kind != source_corner.kind && target_corner.kind != CornerKind::kUnknown &&
-      source_corner.kind != CornerKind::kUnknown) {
+  // Whether a corner is convex is known only from the side it was seen from.
+  if (target.sided && target_corner.kind != source_corner.kind &&
+      target_corner.kind != CornerKind::kUnknown && source_corner.kind != CornerKind::kUnknown) {
     return false;
   }
   const double min_cosine = std::cos(params.direction_tolerance);
@@ -209,7 +212,7 @@ bool compatibleCorners(const ScanModel& target, const Corner& target_corner,
         target.primitives().planes[static_cast<std::size_t>(p)].plane.normal();
     return std::any_of(source_corner.planes.begin(), source_corner.planes.end(), [&](int q) {
       const Plane& other = source.primitives().planes[static_cast<std::size_t>(q)].plane;
-      return normal.dot(target_from_source * other.normal()) > min_cosine;
+      return target.alike(normal, target_from_source * other.normal(), min_cosine);
     });
   });
 }

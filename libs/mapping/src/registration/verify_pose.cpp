@@ -9,50 +9,48 @@
 namespace opp::mapping {
 namespace {
 
-/// A surface in front of another one is in conflict with it only if it is nearer by more spacings
-/// than the depth map's blur.
-constexpr float kBlurSpacings = 2.0F;
-/// And by more than this share of the range: a bin of the depth map is about 0.03 rad wide, and
-/// surfaces may be seen at a grazing angle.
-constexpr float kBlurRatio = 0.05F;
+/// A sample in free space says more against a pose than one on a surface says for it: at a wrong
+/// pose planes still meet planes by chance, at the right one next to nothing stands in free space.
+/// Ratio of the logarithms of the odds, for agreement of 50 % at the right pose against 30 % at a
+/// wrong one, and conflict of 1 % against 8 %.
+constexpr std::int8_t kConflictWeight = 3;
 
-/// Agreement of `moving` with `fixed`; appends what each sample says to `votes`.
+/// Agreement of `moving` with `fixed`; appends what each sample says to the result.
 Agreement compare(const ScanModel& fixed, const ScanModel& moving,
                   const Eigen::Isometry3f& fixed_from_moving, float slack,
-                  const GlobalAlignmentParams& params, std::vector<std::int8_t>& votes) {
+                  const GlobalAlignmentParams& params, Verification& all) {
   const auto min_cosine = static_cast<float>(std::cos(params.normal_gate));
   const auto sigmas = static_cast<float>(params.agreement_sigmas);
-  const float blur = kBlurSpacings * static_cast<float>(fixed.cloud().spacing) + slack;
   Agreement result;
   for (const std::uint32_t i : moving.samples) {
     ++result.samples;
-    votes.push_back(0);
+    all.votes.push_back(0);
+    all.partners.push_back(-1);
     const Eigen::Vector3f point = fixed_from_moving * moving.cloud().points[i];
     const Eigen::Vector3f normal = fixed_from_moving.linear() * moving.cloud().normals[i];
     const std::int32_t nearest = fixed.voxels.near(point, normal, min_cosine);
     if (nearest >= 0) {
       const auto k = static_cast<std::size_t>(nearest);
       const float distance = fixed.cloud().normals[k].dot(point - fixed.cloud().points[k]);
-      const float noise = std::hypot(fixed.cloud().sigmas[k], moving.cloud().sigmas[i]);
+      const float noise = std::hypot(fixed.sigmas[k], moving.sigmas[i]);
       if (std::abs(distance) <= sigmas * noise + slack) {
         ++result.agreeing;
-        votes.back() = 1;
+        all.votes.back() = 1;
+        all.partners.back() = nearest;
         result.squared_distance += static_cast<double>(distance * distance);
         continue;
       }
     }
-    const float range = (point - fixed.cloud().viewpoint).norm();
-    const float free_range = fixed.depth.range(point);
-    const float margin = blur + kBlurRatio * free_range + sigmas * moving.cloud().sigmas[i];
-    if (range >= free_range - margin) continue;
+    if (!fixed.free_space.contains(point, sigmas * moving.sigmas[i] + slack)) continue;
     ++result.conflicting;
-    votes.back() = -1;
+    all.votes.back() = -kConflictWeight;
   }
   return result;
 }
 
 double margin(const Agreement& a) {
-  return a.samples == 0 ? 0.0 : static_cast<double>(a.agreeing - a.conflicting) / a.samples;
+  if (a.samples == 0) return 0.0;
+  return static_cast<double>(a.agreeing - kConflictWeight * a.conflicting) / a.samples;
 }
 
 /// After so many screening samples a pose that has less than this share of what it needs is
@@ -109,10 +107,11 @@ Verification verifyPose(const ScanModel& target, const ScanModel& source,
   const auto tolerance = static_cast<float>(slack);
   Verification result;
   result.votes.reserve(source.samples.size() + target.samples.size());
+  result.partners.reserve(result.votes.capacity());
   result.of_source =
-      compare(target, source, target_from_source.cast<float>(), tolerance, params, result.votes);
+      compare(target, source, target_from_source.cast<float>(), tolerance, params, result);
   result.of_target = compare(source, target, target_from_source.inverse().cast<float>(), tolerance,
-                             params, result.votes);
+                             params, result);
   return result;
 }
 

@@ -24,10 +24,13 @@ struct Agreement {
 /// The agreement of both scans with each other.
 struct Verification {
   Agreement of_source, of_target;
-  /// What each verification sample says (source's first): 1 agrees, −1 conflicts, 0 cannot tell.
+  /// What each verification sample says (source's first): 1 agrees, −3 stands in free space, which
+  /// is rarer at a right pose than agreement at a wrong one, 0 cannot tell.
   std::vector<std::int8_t> votes;
+  /// The other scan's sample that each agrees with; −1: none.
+  std::vector<std::int32_t> partners;
 
-  double score() const;     ///< mean of overlap − conflict over both scans
+  double score() const;     ///< mean of the votes over both scans
   double overlap() const;   ///< of the scan that is covered better
   double conflict() const;  ///< conflicting over agreeing and conflicting, both scans; 0 if none
   double rms() const;       ///< of agreeing samples [m]

@@ -14,7 +14,8 @@ constexpr float kSameSurface = 0.5F;
 
 }  // namespace
 
-VoxelIndex::VoxelIndex(const OrientedCloud& cloud, double cell) : cloud_(cloud) {
+VoxelIndex::VoxelIndex(const OrientedCloud& cloud, double cell, bool sided)
+    : cloud_(cloud), sided_(sided) {
   if (cloud.size() == 0) return;
   chooseGrid(cell);
   for (std::size_t i = 0; i < cloud.size(); ++i) insert(static_cast<std::int32_t>(i));
@@ -42,7 +43,7 @@ bool VoxelIndex::offer(std::int32_t sample, const Eigen::Vector3f& center,
   }
   const auto holder = static_cast<std::size_t>(slot);
   const auto i = static_cast<std::size_t>(sample);
-  if (cloud_.normals[holder].dot(cloud_.normals[i]) < kSameSurface) return false;
+  if (cosine(cloud_.normals[holder], cloud_.normals[i]) < kSameSurface) return false;
   if ((cloud_.points[i] - center).squaredNorm() < (cloud_.points[holder] - center).squaredNorm()) {
     slot = sample;
   }
@@ -73,7 +74,8 @@ std::int32_t VoxelIndex::near(const Eigen::Vector3f& point, const Eigen::Vector3
     return -1;
   }
   for (const std::int32_t i : cells_[indexOf(c.cast<int>())]) {
-    if (i >= 0 && cloud_.normals[static_cast<std::size_t>(i)].dot(normal) > min_cosine) return i;
+    if (i >= 0 && cosine(cloud_.normals[static_cast<std::size_t>(i)], normal) > min_cosine)
+      return i;
   }
   return -1;
 }

@@ -7,6 +7,7 @@
 #include <Eigen/Core>
 
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <vector>
 
@@ -18,7 +19,8 @@ namespace opp::mapping {
 class VoxelIndex {
  public:
   /// \param cell edge of a cell [m] > 0; enlarged where the cloud would need too many cells
-  VoxelIndex(const OrientedCloud& cloud, double cell);
+  /// \param sided false: normals of opposite sign count as the same
+  VoxelIndex(const OrientedCloud& cloud, double cell, bool sided = true);
 
   /// A sample within about a cell of `point` whose normal has a cosine of more than `min_cosine`
   /// with `normal`; −1 if none. Each sample is found from all points within half a cell, unless
@@ -32,6 +34,9 @@ class VoxelIndex {
   using Slots = std::array<std::int32_t, 2>;
 
   void chooseGrid(double cell);
+  float cosine(const Eigen::Vector3f& a, const Eigen::Vector3f& b) const {
+    return sided_ ? a.dot(b) : std::abs(a.dot(b));
+  }
   void insert(std::int32_t sample);
   bool offer(std::int32_t sample, const Eigen::Vector3f& center, std::int32_t& slot) const;
   std::size_t indexOf(const Eigen::Vector3i& c) const {
@@ -42,6 +47,7 @@ class VoxelIndex {
   }
 
   const OrientedCloud& cloud_;
+  bool sided_;
   float inverse_cell_ = 1.0F;
   Eigen::Vector3f low_ = Eigen::Vector3f::Zero();
   Eigen::Vector3i counts_ = Eigen::Vector3i::Zero();

@@ -2,8 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "opp/mapping/core/scan_features.h"
+#include "opp/cloud/sensor_model.h"
 #include "opp/mapping/core/se3.h"
+#include "opp/mapping/registration/alignment_input.h"
 #include "opp/mapping/registration/global_alignment_params.h"
 
 #include <Eigen/Geometry>
@@ -14,12 +15,15 @@
 
 namespace opp::mapping {
 
-/// What `alignGlobally` can say about two scans.
+/// What alignment can say about two scans.
 enum class AlignmentOutcome : std::uint8_t {
   kAligned,       ///< one pose explains both scans, no other does nearly as well
   kAmbiguous,     ///< several distinct poses explain them about equally well (symmetric room)
   kInsufficient,  ///< what they share does not fix all six degrees of freedom
   kNoOverlap,     ///< no pose explains enough of them
+  /// They share three surfaces and nothing more: these fix a pose, but nothing confirms it. Every
+  /// bare corner of every room fits every other.
+  kUnconfirmed,
 };
 
 /// The outcome in words, for people.
@@ -28,7 +32,7 @@ std::string_view describe(AlignmentOutcome outcome);
 /// A pose that was verified against both scans.
 struct AlignmentHypothesis {
   Eigen::Isometry3d target_from_source = Eigen::Isometry3d::Identity();
-  double score = 0.0;     ///< mean over both scans of overlap − conflict, at most 1
+  double score = 0.0;     ///< mean over both scans of overlap − 3 × conflicting share, at most 1
   double overlap = 0.0;   ///< share of the samples of the better covered scan that agree, 0–1
   double conflict = 0.0;  ///< conflicts with free space over agreements and conflicts, 0–1
 };
@@ -39,7 +43,7 @@ struct CornerMatch {
   int source_corner = 0;
 };
 
-/// Outcome of `alignGlobally`.
+/// Outcome of an alignment.
 struct GlobalAlignment {
   AlignmentOutcome outcome = AlignmentOutcome::kInsufficient;
   /// Set for kAligned only; the identity otherwise: no pose is invented.
@@ -52,6 +56,8 @@ struct GlobalAlignment {
   /// votes for the other, over the geometric mean of all samples and of those that tell the two
   /// apart. Below 0.2 several poses explain the scans.
   double clarity = 1.0;
+  /// Share of the agreeing samples that lie on none of the three surfaces that fix the pose.
+  double confirmation = 0.0;
   std::vector<CornerMatch> corner_matches;      ///< at the best hypothesis
   std::vector<AlignmentHypothesis> hypotheses;  ///< distinct, best first; for callers who know more
 };
@@ -63,12 +69,25 @@ struct GlobalAlignment {
 /// ones. Translations come from corners and from offsets of parallel planes; along a direction that
 /// no shared plane fixes they are tried one by one. The best are refined (point to plane, plane
 /// moments) and verified both ways: samples of one scan must lie on surfaces of the other, and
-/// must not stand where the other looked through (seen from its viewpoint). Deterministic.
-/// \param target,source clouds with primitives, each in its own frame; normals toward the viewpoint
+/// must not stand where the other looked through (seen from its viewpoints). Deterministic.
+/// \param target,source clouds with primitives, each in its own frame
+/// \param sensor noise of both scans
 /// \return kInsufficient for clouds that are empty or whose planes are all parallel.
-/// \throws std::invalid_argument if a parameter is out of range if labels and cloud of a scan
+/// \throws std::invalid_argument if a parameter is out of range, if labels and cloud of a scan
 /// differ in length, or if a cloud has samples but no spacing.
-GlobalAlignment alignGlobally(const ScanFeatures& target, const ScanFeatures& source,
-                              const GlobalAlignmentParams& params);
+GlobalAlignment alignGlobally(const AlignmentInput& target, const AlignmentInput& source,
+                              const SensorModel& sensor, const GlobalAlignmentParams& params);
+
+/// Refines and verifies a pose that the caller believes to be right to about a search cell. No
+/// other pose is tried, so the answer is never kAmbiguous, and the caller's belief stands for what
+/// would confirm it, so it is never kUnconfirmed. Errors as above.
+GlobalAlignment alignNear(const AlignmentInput& target, const AlignmentInput& source,
+                          const Eigen::Isometry3d& target_from_source, const SensorModel& sensor,
+                          const GlobalAlignmentParams& params);
+
+/// The same for a pose that is to stay as it is.
+GlobalAlignment judgePose(const AlignmentInput& target, const AlignmentInput& source,
+                          const Eigen::Isometry3d& target_from_source, const SensorModel& sensor,
+                          const GlobalAlignmentParams& params);
 
 }  // namespace opp::mapping

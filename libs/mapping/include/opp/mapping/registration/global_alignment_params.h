@@ -24,12 +24,14 @@ struct GlobalAlignmentParams {
   double cell_ratio = 3.0;
   double agreement_sigmas = 4.0;
   double distinct_rotation = degToRad(8.0);
-  double distinct_translation = 0.25;
+  double distinct_cells = 3.0;
   double min_overlap = 0.25;
   double max_conflict = 0.06;
   double min_clarity = 0.2;
   double min_slide_clarity = 0.09;
   double min_observability = 0.005;
+  double min_confirmation = 0.04;
+  double same_view_overlap = 0.8;
 
   template <typename Self, typename F>
   static void visit(Self&& p, F&& f) {
@@ -53,7 +55,8 @@ struct GlobalAlignmentParams {
                                 "two samples agree if they are so many sigmas apart or less"});
     f(p.distinct_rotation, Field{"distinct_rotation", "rad", 0.01, 1.57,
                                  "poses that differ less, and less than the next, are one"});
-    f(p.distinct_translation, Field{"distinct_translation", "m", 0.01, 10.0, "see above"});
+    f(p.distinct_cells,
+      Field{"distinct_cells", "", 0.5, 100.0, "the same for positions, in edges of a search cell"});
     f(p.min_overlap,
       Field{"min_overlap", "", 0.0, 1.0, "share of the smaller scan that has to agree"});
     f(p.max_conflict, Field{"max_conflict", "", 0.0, 1.0,
@@ -66,6 +69,11 @@ struct GlobalAlignmentParams {
                                  "that direction is not observed"});
     f(p.min_observability, Field{"min_observability", "", 0.0, 0.1,
                                  "share of the samples that must see a motion in each direction"});
+    f(p.min_confirmation, Field{"min_confirmation", "", 0.0, 1.0,
+                                "share of the agreeing samples that must lie beside the three "
+                                "surfaces that fix the pose, else the answer is: unconfirmed"});
+    f(p.same_view_overlap, Field{"same_view_overlap", "", 0.0, 1.01,
+                                 "unless so much of each scan agrees with the other"});
   }
 };
 

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The opp-mapping authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "registration/depth_map.h"
+#include "registration/free_space.h"
 
 #include <algorithm>
 #include <cmath>
@@ -10,6 +10,12 @@ namespace {
 
 /// Bins along the side of a face: 1.2–2° each.
 constexpr int kSide = 60;
+/// A surface in front of another one is in conflict with it only if it is nearer by more spacings
+/// than the depth map's blur.
+constexpr float kBlurSpacings = 2.0F;
+/// And by more than this share of the range: a bin of the depth map is about 0.03 rad wide, and
+/// surfaces may be seen at a grazing angle.
+constexpr float kBlurRatio = 0.05F;
 
 struct CubePoint {
   int face;
@@ -33,7 +39,7 @@ std::size_t indexOf(int face, int u, int v) {
 }  // namespace
 
 DepthMap::DepthMap(const OrientedCloud& cloud)
-    : viewpoint_(cloud.viewpoint), ranges_(6 * kSide * kSide, 0.0F) {
+    : viewpoint_(cloud.viewpoint), spacing_(cloud.spacing), ranges_(6 * kSide * kSide, 0.0F) {
   for (const Eigen::Vector3f& point : cloud.points) {
     const Eigen::Vector3f ray = point - viewpoint_;
     const float distance = ray.norm();
@@ -60,6 +66,22 @@ float DepthMap::range(const Eigen::Vector3f& point) const {
   if (!(ray.squaredNorm() > 0.0F)) return 0.0F;
   const CubePoint at = project(ray);
   return ranges_[indexOf(at.face, clampBin(at.u), clampBin(at.v))];
+}
+
+FreeSpace::FreeSpace(const std::vector<ScanView>& views) {
+  for (const ScanView& view : views) {
+    views_.push_back({view.features_from_view.inverse().cast<float>(), DepthMap(*view.cloud)});
+  }
+}
+
+bool FreeSpace::contains(const Eigen::Vector3f& point, float slack) const {
+  return std::any_of(views_.begin(), views_.end(), [&](const View& view) {
+    const Eigen::Vector3f in_view = view.view_from_features * point;
+    const float surface = view.depth.range(in_view);
+    const float margin =
+        kBlurSpacings * static_cast<float>(view.depth.spacing()) + slack + kBlurRatio * surface;
+    return (in_view - view.depth.viewpoint()).norm() < surface - margin;
+  });
 }
 
 }  // namespace opp::mapping
