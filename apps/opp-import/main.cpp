@@ -81,6 +81,7 @@ void run(opp::apps::CommandLine& line) {
   const ImportPlan plan = opp::mapping::planImport(request.format, request.folder, request.options);
   for (const std::string& note : plan.notes) progress.log(note);
   for (const std::string& file : plan.missing) progress.log("left out: " + file);
+  if (plan.ground_truth.empty()) progress.log("no true poses: no .gt.tum is written");
   const auto total = static_cast<double>(plan.frames.size());
   opp::mapping::runImport(plan, request.rawlog, [&](std::size_t done) {
     progress.update(static_cast<double>(done) / total, done);

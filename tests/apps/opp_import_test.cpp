@@ -39,6 +39,14 @@ TEST_F(OppImport, WritesARawlogAndTheTruthBesideIt) {
   EXPECT_EQ(result.err, "");
 }
 
+TEST_F(OppImport, SaysThatASetHasNoPoses) {
+  std::filesystem::remove(set_ / "groundtruth.txt");
+  const CommandResult result = import({"--intrinsics", "5,5,1.5,1"});
+  EXPECT_EQ(result.exit_code, 0) << result;
+  EXPECT_NE(result.err.find("no true poses"), std::string::npos) << result;
+  EXPECT_EQ(output_.contents(), std::vector<std::string>{"x.rawlog"});
+}
+
 TEST_F(OppImport, SaysWhatIsWrongAndLeavesNothing) {
   EXPECT_EQ(import({}).exit_code, 1);  // 640 × 480 intrinsics for 4 × 3 pixels
   std::filesystem::remove(set_ / "depth/a.png");

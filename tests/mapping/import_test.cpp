@@ -245,7 +245,11 @@ TEST_F(Import, RedwoodReadsItsLogOfMatrices) {
   ASSERT_EQ(import.ground_truth.size(), 2u);
   EXPECT_EQ(import.ground_truth[1].map_from_body.translation(), Eigen::Vector3d(4, 5, 6));
   EXPECT_EQ(import.ground_truth[1].timestamp, import.frames[1].timestamp);
+  EXPECT_TRUE(import.notes.empty());
   importDepth(import, false);
+  addText("x-traj.txt", "0 0 1\n1 0 0 1\n0 1 0 2\n0 0 1 3\n0 0 0 1\n");
+  EXPECT_NE(plan(DatasetFormat::kRedwood).notes.at(0).find("has 1 poses for 2 frames"),
+            std::string::npos);
   addText("x-traj.txt", "1 0 0 1\n");
   EXPECT_NE(planError(DatasetFormat::kRedwood).find("pose 0"), std::string::npos);
   addText("y.log", "");
@@ -286,6 +290,11 @@ TEST_F(Import, KittiKeepsPointsBitForBitAndTurnsCameraPosesIntoThoseOfTheLidar) 
       EXPECT_EQ(z, scans[k][4 * i + 2]);
     }
   }
+  addText("poses.txt", "1 0 0 0 0 1 0 0 0 0 1 0\n");
+  const ImportPlan short_poses = plan(DatasetFormat::kKitti, options);
+  EXPECT_EQ(short_poses.ground_truth.size(), 1u);
+  EXPECT_NE(short_poses.notes.at(0).find("scans from number 1 on have no true pose"),
+            std::string::npos);
   addText("velodyne/000001.bin", "17 bytes of chars");
   EXPECT_THROW(runImport(import, rawlog(), {}), std::runtime_error);
   fs::remove(folder_ / "calib.txt");

@@ -70,7 +70,12 @@ ImportPlan planKitti(const fs::path& folder, const ImportOptions& options) {
   std::size_t k = 0;
   for (const auto& [number, path] : files) {
     const ImportFrame& frame = plan.frames[k++];
-    if (number >= static_cast<long>(lines.size())) break;
+    if (number >= static_cast<long>(lines.size())) {
+      plan.notes.push_back(poses.string() + ": has " + std::to_string(lines.size()) +
+                           " poses; scans from number " + std::to_string(number) +
+                           " on have no true pose");
+      break;
+    }
     const std::string where = poses.string() + ": pose " + std::to_string(number);
     const auto first_camera_from_camera =
         poseFromRows(lines[static_cast<std::size_t>(number)], where);

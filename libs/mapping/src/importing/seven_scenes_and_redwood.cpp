@@ -84,6 +84,11 @@ ImportPlan planRedwood(const fs::path& folder, const ImportOptions& options) {
     addPose(first + static_cast<double>(k / kStep) / rate,
             poseFromRows(joined(lines, k + 1, k + kStep), where), where, plan);
   }
+  const std::size_t count = lines.size() / kStep;
+  if (count < plan.frames.size()) {
+    plan.notes.push_back(poses.string() + ": has " + std::to_string(count) + " poses for " +
+                         std::to_string(plan.frames.size()) + " frames");
+  }
   return plan;
 }
 
