@@ -69,23 +69,29 @@ TEST(MapJoiner, JoinsTwoSessionsOfOneRoomWithoutAGuess) {
 
 TEST(MapJoiner, LeavesDifferentRoomsApart) {
   for (std::uint64_t room = 1; room <= 5; ++room) {
-    const Mapper mapper = mapTwice(test::furnishedRoom(room), test::furnishedRoom(room + 20), 8);
+    const Mapper mapper = mapTwice(test::furnishedRoom(room), test::furnishedRoom(room + 20), 12);
     ASSERT_EQ(mapper.parts().size(), 2U) << "room " << room;
-    EXPECT_EQ(mapper.parts()[0].map.scans.size(), 8U);
-    EXPECT_EQ(mapper.parts()[1].map.scans.size(), 8U);
+    EXPECT_EQ(mapper.parts()[0].map.scans.size(), 12U);
+    EXPECT_EQ(mapper.parts()[1].map.scans.size(), 12U);
   }
 }
 
 TEST(MapJoiner, ClaimsNothingInARoomThatLooksTheSameFromTwoSides) {
   const test::Rectangles room = test::roomSides({-2.0, -1.5, 0.0}, {2.0, 1.5, 2.5});
-  const Mapper mapper = mapTwice(room, room, 8);
+  const Mapper mapper = mapTwice(room, room, 12);
   EXPECT_EQ(mapper.parts().size(), 2U);
+}
+
+TEST(Mapper, GivesUpPartsOfFewScansAndKeepsTheFirst) {
+  const Mapper mapper = mapTwice(test::furnishedRoom(1), test::furnishedRoom(21), 4);
+  ASSERT_EQ(mapper.parts().size(), 1U);
+  EXPECT_EQ(mapper.map().scans.size(), 4U);
 }
 
 TEST(ConflictOf, IsSmallForTheTruePoseAndLargeForAWrongOne) {
   for (std::uint64_t room = 1; room <= 5; ++room) {
     const Mapper mapper = mapTwice(test::furnishedRoom(room), test::furnishedRoom(room + 20), 4);
-    const MapState& map = mapper.parts()[0].map;
+    const MapState& map = mapper.map();
     const MapperParams params;
     EXPECT_LT(conflictOf(map, map, Eigen::Isometry3d::Identity(), 10, params), 0.02);
     const Eigen::Isometry3d aside(Eigen::Translation3d(0.8, 0.5, 0.0));

@@ -38,6 +38,11 @@ MapState mapOf(std::uint64_t room, const Eigen::Isometry3d& pose) {
   return map;
 }
 
+std::optional<PlaceMatch> findIn(const MapState& map, const ScanFeatures& scan,
+                                 const std::optional<PosePrior>& expected) {
+  return matchPlace(map, 0, scan, scan, expected, MapperParams());
+}
+
 double error(const PlaceMatch& match, const Eigen::Isometry3d& keyframe_from_body) {
   return difference(keyframe_from_body, match.keyframe_from_body).norm();
 }
@@ -49,8 +54,7 @@ TEST(MatchPlace, FindsTheScanWithoutAGuess) {
     const Eigen::Isometry3d at = standing(0.0, 0.0, 0.0);
     const Eigen::Isometry3d body =
         standing(random.uniform(-0.4, 0.4), random.uniform(-0.4, 0.4), random.uniform(-3.0, 3.0));
-    const auto match =
-        matchPlace(mapOf(room, at), 0, scanOf(room, body, 2), std::nullopt, MapperParams());
+    const auto match = findIn(mapOf(room, at), scanOf(room, body, 2), std::nullopt);
     if (!match) continue;  // some of these rooms are nearly symmetric
     ++found;
     EXPECT_LT(error(*match, at.inverse() * body), 5e-3) << "room " << room;
@@ -68,8 +72,7 @@ TEST(MatchPlace, UsesAnExpectedPose) {
     error_of_guess << 0.01, -0.01, 0.02, 0.05, -0.08, 0.03;
     drifted.map_from_body = retract(body, error_of_guess);
     drifted.information = 100.0 * Matrix6d::Identity();
-    const auto match =
-        matchPlace(mapOf(room, at), 0, scanOf(room, body, 2), drifted, MapperParams());
+    const auto match = findIn(mapOf(room, at), scanOf(room, body, 2), drifted);
     ASSERT_TRUE(match) << "room " << room;
     EXPECT_LT(error(*match, at.inverse() * body), 5e-3) << "room " << room;
   }
@@ -77,16 +80,14 @@ TEST(MatchPlace, UsesAnExpectedPose) {
 
 TEST(MatchPlace, FindsNothingInAnotherRoom) {
   for (std::uint64_t room = 1; room <= 10; ++room) {
-    const auto match =
-        matchPlace(mapOf(room, standing(0.0, 0.0, 0.0)), 0,
-                   scanOf(room + 20, standing(0.3, 0.2, 0.5), 2), std::nullopt, MapperParams());
+    const auto match = findIn(mapOf(room, standing(0.0, 0.0, 0.0)),
+                              scanOf(room + 20, standing(0.3, 0.2, 0.5), 2), std::nullopt);
     EXPECT_FALSE(match) << "room " << room;
   }
 }
 
 TEST(MatchPlace, OfAnEmptyScanIsNothing) {
-  EXPECT_FALSE(matchPlace(mapOf(1, standing(0.0, 0.0, 0.0)), 0, ScanFeatures(), std::nullopt,
-                          MapperParams()));
+  EXPECT_FALSE(findIn(mapOf(1, standing(0.0, 0.0, 0.0)), ScanFeatures(), std::nullopt));
 }
 
 }  // namespace

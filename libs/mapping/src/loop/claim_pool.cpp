@@ -28,10 +28,15 @@ std::vector<PlaceClaim> ClaimPool::agreed() const {
   std::vector<PlaceClaim> best;
   std::size_t most = 0;
   const PlaceClaim* centre = nullptr;
-  const auto keyframes = [](const std::vector<PlaceClaim>& claims) {
+  const auto keyframes = [&](const std::vector<PlaceClaim>& claims) {
     std::set<int> ids;
-    for (const PlaceClaim& c : claims) ids.insert(c.keyframe_b);
-    return ids.size();
+    std::size_t certain = 0;
+    for (const PlaceClaim& c : claims) {
+      ids.insert(c.keyframe_b);
+      if (c.clarity >= params_.certain_clarity)
+        certain = static_cast<std::size_t>(params_.confirmations);
+    }
+    return std::max(ids.size(), certain);
   };
   for (const PlaceClaim& claim : claims_) {
     std::vector<PlaceClaim> group;

@@ -106,7 +106,8 @@ int acceptClaims(const std::vector<PlaceClaim>& claims, const MapperParams& para
     keyframes.emplace_back(k.map_from_body, k.landmark_of_plane);
   }
   std::vector<PlaceClaim> kept = claims;
-  while (kept.size() >= Index(params.loop.confirmations)) {
+  const Index needed = std::min(claims.size(), Index(params.loop.confirmations));
+  while (!kept.empty() && kept.size() >= needed) {
     for (const PlaceClaim& claim : kept) {
       map.factors.relative_poses.push_back(
           {claim.keyframe_a, claim.keyframe_b, claim.keyframe_a_from_b, claim.information, true});
@@ -140,8 +141,8 @@ bool LoopCloser::close(MapState& map) {
   const Keyframe& keyframe = map.keyframes.back();
   for (const int candidate : candidates(map, newest, variances, params_)) {
     const double variance = variances[Index(candidate)];
-    const auto match =
-        matchPlace(map, candidate, keyframe.features, driftedPose(keyframe, variance), params_);
+    const auto match = matchPlace(map, candidate, keyframe.features, keyframe.features,
+                                  driftedPose(keyframe, variance), params_);
     if (!match) continue;
     const PlaceClaim claim = claimOf(map, newest, *match);
     if (disagreement(map, claim) > params_.loop.drift_gate * std::sqrt(variance)) continue;

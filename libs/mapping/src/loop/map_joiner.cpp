@@ -5,6 +5,7 @@
 #include "opp/mapping/backend/settle_map.h"
 #include "opp/mapping/loop/join_maps.h"
 #include "opp/mapping/loop/match_place.h"
+#include "opp/mapping/loop/place.h"
 
 #include "registration/scan_model.h"
 #include "registration/verify_pose.h"
@@ -116,9 +117,12 @@ std::vector<MapJoiner::Candidate> MapJoiner::candidates(const std::vector<MapPar
 void MapJoiner::claim(const std::vector<MapPart>& parts, Index claimant, int keyframe) {
   const MapPart& own = parts[claimant];
   const Keyframe& scan = own.map.keyframes[Index(keyframe)];
+  const Place own_place =
+      placeOf(own.map, keyframe, placeAround(own.map, keyframe, params_), params_);
   for (const Candidate& c : candidates(parts, claimant, scan.features.primitives_in_body)) {
     const MapPart& other = parts[c.part];
-    const auto match = matchPlace(other.map, c.keyframe, scan.features, std::nullopt, params_);
+    const auto match =
+        matchPlace(other.map, c.keyframe, scan.features, own_place.features, std::nullopt, params_);
     if (!match) continue;
     PlaceClaim claim;
     claim.keyframe_a = match->keyframe;
@@ -128,6 +132,7 @@ void MapJoiner::claim(const std::vector<MapPart>& parts, Index claimant, int key
     claim.map_a_from_map_b = other.map.keyframes[Index(match->keyframe)].map_from_body *
                              match->keyframe_from_body * scan.map_from_body.inverse();
     claim.place_in_map_b = scan.viewCentre();
+    claim.clarity = match->clarity;
     if (reachable(other.map, own.map, claim.map_a_from_map_b, params_))
       pool(other.id, own.id).add(claim);
   }
@@ -169,8 +174,9 @@ bool MapJoiner::joinAgreed(std::vector<MapPart>& parts, Index claimant) {
 bool MapJoiner::joinNewest(std::vector<MapPart>& parts) {
   if (parts.size() < 2 || !params_.loop.join_maps) return false;
   const Index newest = parts.size() - 1;
-  claim(parts, newest, static_cast<int>(parts[newest].map.keyframes.size()) - 1);
-  return joinAgreed(parts, newest);
+  const int keyframes = static_cast<int>(parts[newest].map.keyframes.size());
+  claim(parts, newest, keyframes - 1);
+  return keyframes >= params_.loop.early_keyframes && joinAgreed(parts, newest);
 }
 
 void MapJoiner::joinAll(std::vector<MapPart>& parts) {

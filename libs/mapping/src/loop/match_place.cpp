@@ -4,6 +4,7 @@
 
 #include "opp/mapping/frontend/build_local_map.h"
 #include "opp/mapping/loop/keyframe_graph.h"
+#include "opp/mapping/loop/place.h"
 #include "opp/mapping/registration/align_globally.h"
 
 #include <algorithm>
@@ -34,27 +35,35 @@ PlaceMatch describe(const MapState& map, int keyframe, const MatchResult& match)
 
 }  // namespace
 
+std::vector<int> placeAround(const MapState& map, int keyframe, const MapperParams& params) {
+  return nearestViews(map, keyframe, relativeVariances(map, keyframe),
+                      connectedVariance(map, keyframe, params), params.loop.place_keyframes);
+}
+
 std::optional<PlaceMatch> matchPlace(const MapState& map, int keyframe, const ScanFeatures& scan,
+                                     const AlignmentInput& surroundings,
                                      const std::optional<PosePrior>& expected,
                                      const MapperParams& params) {
-  const std::vector<int> place =
-      nearestViews(map, keyframe, relativeVariances(map, keyframe),
-                   connectedVariance(map, keyframe, params), params.loop.place_keyframes);
+  const std::vector<int> place = placeAround(map, keyframe, params);
   const LocalMap local = localMapOf(map, place, params);
   if (expected) {
     const MatchResult match = matchScan(scan, local, *expected, params.registration);
     if (match.overlap >= params.loop.min_overlap) return describe(map, keyframe, match);
   }
+  const Place merged = placeOf(map, keyframe, place, params);
   const GlobalAlignment alignment = alignGlobally(
-      keyframeOf(map, keyframe).features, scan, params.primitives.sensor, params.global_alignment);
+      merged.input(), surroundings, params.primitives.sensor, params.global_alignment);
   if (alignment.outcome != AlignmentOutcome::kAligned) return std::nullopt;
   // A start without weight: the alignment saw the same scan, so its information must not count
   // twice.
   PosePrior start;
   start.map_from_body = keyframeOf(map, keyframe).map_from_body * alignment.target_from_source;
   const MatchResult match = matchScan(scan, local, start, params.registration);
-  if (match.overlap < params.loop.min_overlap) return std::nullopt;
-  return describe(map, keyframe, match);
+  // The alignment has weighed all that is known; the scan alone may look past the place.
+  if (match.overlap < params.global_alignment.min_overlap) return std::nullopt;
+  PlaceMatch result = describe(map, keyframe, match);
+  result.clarity = alignment.clarity;
+  return result;
 }
 
 }  // namespace opp::mapping

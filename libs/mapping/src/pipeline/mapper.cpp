@@ -116,7 +116,7 @@ void Mapper::finish() {
     return a.map.scans.size() > b.map.scans.size();
   });
   const auto small = [&](const MapPart& part) {
-    return part.map.keyframes.size() < static_cast<std::size_t>(params_.loop.min_keyframes);
+    return part.map.scans.size() < static_cast<std::size_t>(params_.loop.min_scans);
   };
   if (parts_.size() > 1)
     parts_.erase(std::remove_if(parts_.begin() + 1, parts_.end(), small), parts_.end());

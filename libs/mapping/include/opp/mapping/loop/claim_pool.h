@@ -21,6 +21,7 @@ struct PlaceClaim {
   /// and after it drifted.
   Eigen::Isometry3d map_a_from_map_b = Eigen::Isometry3d::Identity();
   Eigen::Vector3d place_in_map_b = Eigen::Vector3d::Zero();  ///< where the claim was made [m]
+  double clarity = 0.0;                                      ///< see PlaceMatch
 };
 
 /// Claims about the same two frames, waiting for enough of them to agree. A single scan can fit at
@@ -36,7 +37,8 @@ class ClaimPool {
   void clear() { claims_.clear(); }
   bool empty() const { return claims_.empty(); }
 
-  /// The claims of the pose that most different keyframes b agree on, if these are at least
+  /// The claims of the pose that most different keyframes b agree on (one that is clearer than
+  /// `certain_clarity` counts as all that are needed), if these are at least
   /// `confirmations` and `rival_ratio` times as many as claim anything else; else empty: not
   /// proven, or ambiguous. In order of arrival. O(claims²).
   std::vector<PlaceClaim> agreed() const;

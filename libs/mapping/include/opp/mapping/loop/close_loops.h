@@ -35,8 +35,8 @@ class LoopCloser {
 };
 
 /// Ties `keyframe_b` of each claim to its `keyframe_a`, optimizes the whole map and joins
-/// landmarks. Claims that disagree with the result are taken out again, all of them if less than
-/// `confirmations` are left; then the map is as before. Returns how many stay.
+/// landmarks. Claims that disagree with the result are taken out again, all of them if less are
+/// left than were needed; then the map is as before. Returns how many stay.
 int acceptClaims(const std::vector<PlaceClaim>& claims, const MapperParams& params, MapState& map);
 
 }  // namespace opp::mapping

@@ -35,6 +35,12 @@ class SurfelMap {
   /// none. Constant time.
   const Surfel* closest(const Eigen::Vector3f& point, const Eigen::Vector3f& normal) const;
 
+  /// Calls f(surfel) for each surfel, in the order in which they were made.
+  template <typename F>
+  void visit(const F& f) const {
+    for (const Entry& entry : surfels_) f(entry.surfel);
+  }
+
   double voxelSize() const { return voxel_size_; }
   std::size_t size() const { return surfels_.size(); }
 
