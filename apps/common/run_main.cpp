@@ -5,6 +5,8 @@
 #include "opp/mapping/core/version.h"
 #include "opp/mapping/io/ini_file.h"
 
+#include <malloc.h>
+
 #include <exception>
 #include <iostream>
 #include <new>
@@ -32,6 +34,14 @@ int report(const std::string& name, std::string_view message, int exit_code) {
   return exit_code;
 }
 
+/// Buffers of megabytes come and go with every scan. Given back to the system each time, their
+/// pages are cleared each time anew, which takes up to half of a detection's time.
+void keepFreedMemory() {
+  constexpr int kMebibyte = 1 << 20;
+  mallopt(M_MMAP_THRESHOLD, 32 * kMebibyte);  // the largest value that glibc takes
+  mallopt(M_TRIM_THRESHOLD, 256 * kMebibyte);
+}
+
 }  // namespace
 
 std::string userMessage(std::string_view what) {
@@ -45,6 +55,7 @@ std::string userMessage(std::string_view what) {
 
 int runMain(int argc, const char* const* argv, const std::string& name, const std::string& purpose,
             const std::function<void(CommandLine&)>& run) {
+  keepFreedMemory();
   try {
     std::vector<std::string> arguments(argv, argv + argc);
     arguments.front() = name;  // not the path it was called by

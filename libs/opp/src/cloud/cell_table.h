@@ -26,8 +26,18 @@ class CellTable {
     slots_.resize(capacity);
   }
 
+  /// Empties the table, now for cells of `edge` [m].
+  void reset(double edge) {
+    inverse_edge_ = 1.0 / edge;
+    std::fill(slots_.begin(), slots_.end(), Slot());
+    size_ = 0;
+  }
+
   Cell cellOf(const Eigen::Vector3d& point) const {
-    return ((point - origin_).array() * inverse_edge_).floor().cast<int>();
+    const Eigen::Array3d cells = (point - origin_).array() * inverse_edge_;
+    const Cell truncated = cells.cast<int>();
+    // Rounds down; without SSE 4.1 std::floor is a call.
+    return truncated - (truncated.cast<double>() > cells).cast<int>();
   }
 
   std::size_t size() const { return size_; }

@@ -32,9 +32,8 @@ Extent extentOf(const std::vector<Eigen::Vector3f>& points) {
 /// The shortest cell edge whose indices fit a CellTable, with room for a neighbour on each side.
 double smallestCell(const Extent& extent) { return extent.length / ((1 << 21) - 4); }
 
-std::size_t countCells(const std::vector<Eigen::Vector3f>& points, const Extent& extent,
-                       double edge, std::size_t expected) {
-  CellTable table(extent.low, edge, expected);
+std::size_t countCells(const std::vector<Eigen::Vector3f>& points, double edge, CellTable& table) {
+  table.reset(edge);
   for (const Eigen::Vector3f& p : points) {
     table.findOrInsert(table.cellOf(p.cast<double>()), 0);
   }
@@ -52,7 +51,8 @@ class Sampler {
         cos_merge_(static_cast<float>(std::cos(params.merge_angle))),
         gate_(params.gate),
         tilt_(std::tan(params.normal_error) * spacing),
-        table_(extent.low, kEdgeRatio * spacing, static_cast<std::size_t>(params.target_samples)) {}
+        table_(extent.low, kEdgeRatio * spacing,
+               static_cast<std::size_t>(params.target_samples / (kEdgeRatio * kEdgeRatio))) {}
 
   void add(const Eigen::Vector3f& point, const Eigen::Vector3f& normal, float sigma, float weight) {
     int sample = nearest(point, normal, sigma, weight);
@@ -172,9 +172,9 @@ double spacingForCount(const std::vector<Eigen::Vector3f>& points, std::size_t t
       std::min(static_cast<double>(target), 0.9 * static_cast<double>(points.size()));
   if (!(extent.length > floor) || wanted < 1.0) return floor;
   double edge = std::max(floor, extent.length / std::sqrt(wanted));
+  CellTable table(extent.low, edge, static_cast<std::size_t>(wanted));
   for (int step = 0; step < kMaxSteps; ++step) {
-    const auto count =
-        static_cast<double>(countCells(points, extent, edge, static_cast<std::size_t>(wanted)));
+    const auto count = static_cast<double>(countCells(points, edge, table));
     const double factor = std::sqrt(count / wanted);
     if (std::abs(factor - 1.0) < kTolerance || (edge <= floor && factor < 1.0)) break;
     edge = std::max(floor, edge * factor);

@@ -53,6 +53,20 @@ double neighborAngle(const PointCloud& cloud, const RangeGate& gate, int row_ste
   return *middle;
 }
 
+/// Amid the points, where sums of coordinates lose the fewest digits.
+Eigen::Vector3d roughCenter(const PointCloud& cloud, const RangeGate& gate) {
+  constexpr std::size_t kSamples = 500;
+  const std::size_t stride = std::max<std::size_t>(1, cloud.size() / kSamples);
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  double count = 0.0;
+  for (std::size_t i = 0; i < cloud.size(); i += stride) {
+    if (!gate.contains(cloud.points[i])) continue;
+    sum += cloud.points[i].cast<double>();
+    count += 1.0;
+  }
+  return count > 0.0 ? Eigen::Vector3d(sum / count) : cloud.viewpoint.cast<double>();
+}
+
 /// Angles between neighbouring rays [rad]; 0: unknown.
 struct GridAngles {
   double row = 0.0;
@@ -100,22 +114,6 @@ MomentSums blockSums(const PointCloud& cloud, const RangeGate& gate, const Eigen
 
 }  // namespace
 
-void GridPatches::window(int patch, int radius, std::vector<int>& members) const {
-  members.clear();
-  const int block = block_of_patch[static_cast<std::size_t>(patch)];
-  const int row = block / cols;
-  const int col = block % cols;
-  // A window as wide as the whole turn must not meet itself.
-  const int reach = columns_wrap ? std::min(radius, (cols - 1) / 2) : radius;
-  for (int r = std::max(0, row - radius); r <= std::min(rows - 1, row + radius); ++r) {
-    for (int c = col - reach; c <= col + reach; ++c) {
-      if (!columns_wrap && (c < 0 || c >= cols)) continue;
-      const int neighbor = patch_of_block[static_cast<std::size_t>(r * cols + (c + cols) % cols)];
-      if (neighbor >= 0) members.push_back(neighbor);
-    }
-  }
-}
-
 GridPatches makeGridPatches(const PointCloud& cloud, const SensorModel& sensor,
                             std::size_t target) {
   const RangeGate gate(cloud, sensor);
@@ -125,7 +123,7 @@ GridPatches makeGridPatches(const PointCloud& cloud, const SensorModel& sensor,
   grid.rows = (cloud.rows + shape.rows - 1) / shape.rows;
   grid.cols = (cloud.cols + shape.cols - 1) / shape.cols;
   grid.columns_wrap = cloud.columns_wrap;
-  grid.patches.origin = cloud.viewpoint.cast<double>();
+  grid.patches.origin = roughCenter(cloud, gate);
   grid.patches.pixel_angle = std::min(angles.row, angles.col);
   grid.patches.reserve(static_cast<std::size_t>(grid.rows) * static_cast<std::size_t>(grid.cols));
   for (int r = 0; r < grid.rows; ++r) {
@@ -141,6 +139,77 @@ GridPatches makeGridPatches(const PointCloud& cloud, const SensorModel& sensor,
     }
   }
   return grid;
+}
+
+GridWindows::GridWindows(const GridPatches& grid, int max_radius)
+    : grid_(grid),
+      margin_(grid.columns_wrap ? std::min(max_radius, grid.cols) : 0),
+      stride_(grid.cols + 2 * margin_ + 1),
+      areas_(static_cast<std::size_t>(grid.rows + 1) * static_cast<std::size_t>(stride_)) {
+  for (int row = 0; row < grid.rows; ++row) {
+    WindowSums line;
+    for (int col = 0; col + 1 < stride_; ++col) {
+      const int patch = patchAt(row, col - margin_);
+      if (patch >= 0) {
+        const auto k = static_cast<std::size_t>(patch);
+        line.add(grid.patches.sums[k], grid.patches.means[k]);
+      }
+      const WindowSums& above = area(row, col + 1);
+      WindowSums& here = area(row + 1, col + 1);
+      here.values = above.values + line.values;
+      here.patches = above.patches + line.patches;
+    }
+  }
+}
+
+int GridWindows::reach(int radius) const {
+  return grid_.columns_wrap ? std::min(radius, (grid_.cols - 1) / 2) : radius;
+}
+
+int GridWindows::patchAt(int row, int col) const {
+  if (row < 0 || row >= grid_.rows) return -1;
+  if (!grid_.columns_wrap && (col < 0 || col >= grid_.cols)) return -1;
+  const int inside = col < 0 ? col + grid_.cols : (col >= grid_.cols ? col - grid_.cols : col);
+  return grid_.patch_of_block[static_cast<std::size_t>(row * grid_.cols + inside)];
+}
+
+WindowSums GridWindows::sums(int patch, int radius) {
+  const int block = grid_.block_of_patch[static_cast<std::size_t>(patch)];
+  const int row = block / grid_.cols, col = block % grid_.cols + margin_;
+  const int top = std::max(0, row - radius), bottom = std::min(grid_.rows, row + radius + 1);
+  const int left = std::max(0, col - reach(radius));
+  const int right = std::min(stride_ - 1, col + reach(radius) + 1);
+  const WindowSums &outer = area(bottom, right), &above = area(top, right);
+  const WindowSums &beside = area(bottom, left), &corner = area(top, left);
+  WindowSums window;
+  window.values = (outer.values - above.values) - (beside.values - corner.values);
+  window.patches = outer.patches - above.patches - beside.patches + corner.patches;
+  window.complete = window.patches == (2 * radius + 1) * (2 * radius + 1);
+  return window;
+}
+
+void GridWindows::members(int patch, int radius, std::vector<int>& members) {
+  members.clear();
+  const int block = grid_.block_of_patch[static_cast<std::size_t>(patch)];
+  const int row = block / grid_.cols, col = block % grid_.cols;
+  for (int r = row - radius; r <= row + radius; ++r) {
+    for (int c = col - reach(radius); c <= col + reach(radius); ++c) {
+      const int member = patchAt(r, c);
+      if (member >= 0) members.push_back(member);
+    }
+  }
+}
+
+void GridWindows::shifted(int patch, int radius, std::vector<int>& centers) {
+  centers.clear();
+  const int block = grid_.block_of_patch[static_cast<std::size_t>(patch)];
+  const int row = block / grid_.cols, col = block % grid_.cols;
+  for (const int r : {row - radius, row, row + radius}) {
+    for (const int c : {col - reach(radius), col, col + reach(radius)}) {
+      const int center = patchAt(r, c);
+      if (center >= 0) centers.push_back(center);
+    }
+  }
 }
 
 }  // namespace opp

@@ -9,8 +9,8 @@ namespace opp {
 /// A plane fitted to points whose noise differs by direction.
 struct NoisyPlane {
   Eigen::Vector3d normal;  ///< unit length, either sign; not finite: the points do not fix it
-  Eigen::Vector3d narrow;  ///< unit tangent along which the points extend less
-  double width;            ///< their variance along it, without the noise [m²]
+  double width;            ///< smaller variance of the points in the plane, without the noise [m²]
+  Eigen::Matrix3d surface;  ///< covariance of the points without the noise [m²]
 };
 
 /// Unit normal and smaller tangential variance of points with covariance `covariance`, whose noise
@@ -20,5 +20,8 @@ struct NoisyPlane {
 /// in the plane as well.
 NoisyPlane fitNoisyPlane(const Eigen::Matrix3d& covariance, const Eigen::Vector3d& ray,
                          double along, double across);
+
+/// Unit tangent along which the points extend less.
+Eigen::Vector3d narrowDirection(const NoisyPlane& plane);
 
 }  // namespace opp

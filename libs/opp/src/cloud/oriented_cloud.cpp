@@ -61,10 +61,9 @@ OrientedCloud fromGivenNormals(const PointCloud& cloud, const SensorModel& senso
   return dense;
 }
 
-OrientedCloud fromPatches(const Patches& patches, const Neighborhood& neighborhood,
-                          const PointCloud& cloud, const SensorModel& sensor,
-                          const SamplingParams& params) {
-  PatchNormals estimator(patches, neighborhood, cloud.viewpoint.cast<double>(), sensor, params);
+OrientedCloud fromPatches(const Patches& patches, PatchWindows& windows, const PointCloud& cloud,
+                          const SensorModel& sensor, const SamplingParams& params) {
+  PatchNormals estimator(patches, windows, cloud.viewpoint.cast<double>(), sensor, params);
   const std::vector<PatchNormal> normals = estimator.estimate();
   OrientedCloud dense;
   for (std::size_t i = 0; i < patches.size(); ++i) {
@@ -84,7 +83,7 @@ OrientedCloud fromUnorganized(const PointCloud& cloud, const SensorModel& sensor
   if (points.empty()) return {};
   const double edge = spacingForCount(points, patch_count, 0.0);
   const Patches patches = makeVoxelPatches(points, edge);
-  return fromPatches(patches, nearestPatches(patches), cloud, sensor, params);
+  return fromPatches(patches, *nearestPatches(patches), cloud, sensor, params);
 }
 
 OrientedCloud denseSurface(const PointCloud& cloud, const SensorModel& sensor,
@@ -94,10 +93,8 @@ OrientedCloud denseSurface(const PointCloud& cloud, const SensorModel& sensor,
       static_cast<std::size_t>(params.patches_per_sample * params.target_samples);
   if (!cloud.organized()) return fromUnorganized(cloud, sensor, params, patch_count);
   const GridPatches grid = makeGridPatches(cloud, sensor, patch_count);
-  const auto window = [&grid](int patch, int radius, std::vector<int>& members) {
-    grid.window(patch, radius, members);
-  };
-  return fromPatches(grid.patches, window, cloud, sensor, params);
+  GridWindows windows(grid, params.max_window_radius);
+  return fromPatches(grid.patches, windows, cloud, sensor, params);
 }
 
 /// The middle one of the points' noise levels: most samples need not be closer than it allows.

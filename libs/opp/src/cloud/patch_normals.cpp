@@ -16,39 +16,43 @@ namespace {
 /// A plane takes three numbers from its window; what is left measures the misfit.
 constexpr int kPlaneParameters = 3;
 
-Eigen::Matrix3d covarianceOf(const MomentSums& sums, const Eigen::Vector3d& mean) {
-  Eigen::Matrix3d second;
-  second << sums[4], sums[5], sums[6], sums[5], sums[7], sums[8], sums[6], sums[8], sums[9];
-  return second / sums[0] - mean * mean.transpose();
+/// Symmetric matrix from xx, xy, xz, yy, yz, zz.
+template <typename Values>
+Eigen::Matrix3d symmetric(const Values& v) {
+  Eigen::Matrix3d matrix;
+  matrix << v[0], v[1], v[2], v[1], v[3], v[4], v[2], v[4], v[5];
+  return matrix;
 }
 
-/// Standard deviation of a coordinate that was rounded to single precision, near `point`.
-double roundingSigma(const Eigen::Vector3d& point) {
-  return static_cast<double>(std::numeric_limits<float>::epsilon()) *
-         point.lpNorm<Eigen::Infinity>();
+/// Variance of a coordinate that was rounded to single precision, near `point`.
+double roundingVariance(const Eigen::Vector3d& point) {
+  const double rounding =
+      static_cast<double>(std::numeric_limits<float>::epsilon()) * point.lpNorm<Eigen::Infinity>();
+  return rounding * rounding;
 }
 
-/// The median of ratios of a measured to an expected variance as a factor of standard deviations,
-/// at most 3: more noise than three times the model's is taken for structure. 1 if there are none.
+/// The median of ratios of a measured to an expected variance, at most 3²: more noise than three
+/// times the model's is taken for structure. 1 if there are none.
 double scaleFrom(std::vector<double>& variance_ratios) {
-  constexpr double kLargest = 3.0;
+  constexpr double kLargest = 9.0;
   if (variance_ratios.empty()) return 1.0;
   const auto middle =
       variance_ratios.begin() + static_cast<std::ptrdiff_t>(variance_ratios.size() / 2);
   std::nth_element(variance_ratios.begin(), middle, variance_ratios.end());
-  return std::min(kLargest, std::sqrt(*middle));
+  return std::min(kLargest, *middle);
 }
 
 }  // namespace
 
-PatchNormals::PatchNormals(const Patches& patches, Neighborhood neighborhood,
+PatchNormals::PatchNormals(const Patches& patches, PatchWindows& windows,
                            const Eigen::Vector3d& viewpoint, const SensorModel& sensor,
                            const SamplingParams& params)
     : patches_(patches),
-      neighborhood_(std::move(neighborhood)),
+      windows_(windows),
       viewpoint_(viewpoint - patches.origin),
       sensor_(sensor),
       params_(params),
+      least_cosine_(std::cos(params.max_incidence)),
       fits_(patches.size()),
       fit_radius_(patches.size(), 0) {}
 
@@ -76,14 +80,12 @@ void PatchNormals::measureNoise() {
   std::vector<double> within;
   const std::size_t stride = std::max<std::size_t>(1, patches_.size() / kSamples);
   for (std::size_t i = 0; i < patches_.size(); i += stride) {
-    neighborhood_(static_cast<int>(i), 1, window_);
-    const WindowFit plane = fitWindow(window_);
+    const WindowFit plane = fitWindow(static_cast<int>(i), 1);
     if (plane.normal.isZero()) continue;
-    const double expected = plane.expected_sigma * plane.expected_sigma;
-    const int freedom = static_cast<int>(window_.size()) - kPlaneParameters;
+    const double expected = plane.expected_variance;
     // Median of χ² over its degrees of freedom (Wilson & Hilferty 1931).
-    const double median_over_mean = std::pow(1.0 - 2.0 / (9.0 * freedom), 3);
-    between.push_back(betweenPatches(window_, plane) / (freedom * median_over_mean * expected));
+    const double median_over_mean = std::pow(1.0 - 2.0 / (9.0 * plane.freedom), 3);
+    between.push_back(plane.between / (plane.freedom * median_over_mean * expected));
     const double count = patches_.sums[i][0];
     if (count < 2.0) continue;
     within.push_back(spreadOf(static_cast<int>(i), plane.normal) * count / (count - 1.0) /
@@ -103,14 +105,15 @@ double PatchNormals::spreadOf(int patch, const Eigen::Vector3d& normal) const {
   return square / s[0] - mean * mean;
 }
 
-WindowFit PatchNormals::fitWindow(const std::vector<int>& window) const {
+WindowFit PatchNormals::fitWindow(int patch, int radius) {
   WindowFit fit;
-  const int freedom = static_cast<int>(window.size()) - kPlaneParameters;
-  if (freedom < 1) return fit;
-  MomentSums sums = MomentSums::Zero();
-  for (const int i : window) sums += patches_.sums[static_cast<std::size_t>(i)];
-  fit.mean = sums.segment<3>(1) / sums[0];
-  const Eigen::Matrix3d covariance = covarianceOf(sums, fit.mean);
+  const WindowSums window = windows_.sums(patch, radius);
+  fit.freedom = window.patches - kPlaneParameters;
+  if (fit.freedom < 1) return fit;
+  const double count = window.values[0];
+  fit.mean = window.values.segment<3>(1) / count;
+  const Eigen::Matrix3d mean_square = fit.mean * fit.mean.transpose();
+  const Eigen::Matrix3d covariance = symmetric(window.values.segment<6>(4)) / count - mean_square;
   const Eigen::Vector3d to_viewpoint = viewpoint_ - fit.mean;
   const double range = to_viewpoint.norm();
   const Eigen::Vector3d ray =
@@ -118,44 +121,51 @@ WindowFit PatchNormals::fitWindow(const std::vector<int>& window) const {
   const NoisyPlane plane =
       fitNoisyPlane(covariance, ray, sensor_.sigma(range), sensor_.noise_constant);
   if (!(plane.width > 0.0) || !plane.normal.allFinite()) return fit;
-  if (hangsOnOnePatch(window, fit.mean, plane.narrow)) return fit;
-
   const double cos_incidence = plane.normal.dot(ray);
-  if (std::abs(cos_incidence) < std::cos(params_.max_incidence)) return fit;
+  if (std::abs(cos_incidence) < least_cosine_) return fit;
+  // Rays that spread in two directions meet a line of points only where it hides in one of them.
+  if (!window.complete && hangsOnOnePatch(patch, radius, fit.mean, narrowDirection(plane))) {
+    return fit;
+  }
+
   fit.normal = cos_incidence < 0.0 ? Eigen::Vector3d(-plane.normal) : plane.normal;
   setNoise(fit, range, std::abs(cos_incidence));
   // A surface whose normal turns by ±normal_error over the window's width w = √(12 variance)
   // deviates from its plane by normal_error·w/√180 (rms of a parabola).
-  fit.bend = params_.normal_error * std::sqrt(plane.width / 15.0);
-  const double between = betweenPatches(window, fit);
-  const double noise = fit.sigma * fit.sigma;
+  fit.bend_variance = params_.normal_error * params_.normal_error * plane.width / 15.0;
+  const Eigen::Matrix3d between = symmetric(window.values.tail<6>()) - count * mean_square;
+  fit.between = std::max(0.0, fit.normal.dot(between * fit.normal));
+  const double noise = fit.variance;
   // Upper quantile of χ² by its normal approximation.
-  const double deviation = std::sqrt(2.0 * freedom);
+  const double deviation = std::sqrt(2.0 * fit.freedom);
   fit.misfit =
-      between / (noise * (freedom + params_.gate * deviation) + sums[0] * fit.bend * fit.bend);
-  fit.surprise = (between / noise - freedom) / deviation;
-  fit.angle_variance = std::max(noise, between / freedom) / (sums[0] * plane.width);
+      fit.between / (noise * (fit.freedom + params_.gate * deviation) + count * fit.bend_variance);
+  fit.surprise = (fit.between / noise - fit.freedom) / deviation;
+  fit.least_angle_variance = noise / (count * plane.width);
+  fit.angle_variance = std::max(noise, fit.between / fit.freedom) / (count * plane.width);
   return fit;
 }
 
 void PatchNormals::setNoise(WindowFit& window, double range, double cos_incidence) const {
-  window.model_sigma = sensor_.sigmaAlongNormal(range, cos_incidence);
+  const double sigma = sensor_.sigmaAlongNormal(range, cos_incidence);
+  window.model_variance = sigma * sigma;
   // A ray that is off by an angle meets a slanted surface nearer or farther (modelled so by Handa
   // et al., ICRA 2014).
-  const double lateral = params_.lateral_noise * patches_.pixel_angle * range *
-                         std::sqrt(std::max(0.0, 1.0 - cos_incidence * cos_incidence));
-  window.expected_sigma = std::sqrt(window.model_sigma * window.model_sigma + lateral * lateral);
-  const double least =
-      params_.noise_floor * window.model_sigma + roundingSigma(window.mean + patches_.origin);
-  window.sigma = std::max(least, noise_scale_ * window.expected_sigma);
-  window.spread_sigma = std::max(least, spread_scale_ * window.expected_sigma);
+  const double lateral = params_.lateral_noise * patches_.pixel_angle * range;
+  window.expected_variance = window.model_variance +
+                             lateral * lateral * std::max(0.0, 1.0 - cos_incidence * cos_incidence);
+  const double least = params_.noise_floor * params_.noise_floor * window.model_variance +
+                       roundingVariance(window.mean + patches_.origin);
+  window.variance = std::max(least, noise_scale_ * window.expected_variance);
+  window.spread_variance = std::max(least, spread_scale_ * window.expected_variance);
 }
 
-bool PatchNormals::hangsOnOnePatch(const std::vector<int>& window, const Eigen::Vector3d& mean,
-                                   const Eigen::Vector3d& narrow) const {
+bool PatchNormals::hangsOnOnePatch(int patch, int radius, const Eigen::Vector3d& mean,
+                                   const Eigen::Vector3d& narrow) {
+  windows_.members(patch, radius, window_);
   double sum = 0.0;
   double largest = 0.0;
-  for (const int i : window) {
+  for (const int i : window_) {
     const auto k = static_cast<std::size_t>(i);
     const double lever = narrow.dot(patches_.means[k] - mean);
     const double moment = patches_.sums[k][0] * lever * lever;
@@ -165,21 +175,10 @@ bool PatchNormals::hangsOnOnePatch(const std::vector<int>& window, const Eigen::
   return 2.0 * largest > sum;
 }
 
-double PatchNormals::betweenPatches(const std::vector<int>& window, const WindowFit& plane) const {
-  double sum = 0.0;
-  for (const int i : window) {
-    const auto k = static_cast<std::size_t>(i);
-    const double offset = plane.normal.dot(patches_.means[k] - plane.mean);
-    sum += patches_.sums[k][0] * offset * offset;
-  }
-  return sum;
-}
-
 const WindowFit& PatchNormals::fit(int patch, int radius) {
   const auto k = static_cast<std::size_t>(patch);
   if (fit_radius_[k] != radius) {
-    neighborhood_(patch, radius, window_);
-    fits_[k] = fitWindow(window_);
+    fits_[k] = fitWindow(patch, radius);
     fit_radius_[k] = radius;
   }
   return fits_[k];
@@ -190,18 +189,17 @@ bool PatchNormals::fits(int patch, const WindowFit& plane) const {
   const double gate = params_.gate * params_.gate;
   const double count = patches_.sums[k][0];
   // In the middle of its window a parabola is √5/2 times its rms away from the plane.
-  const double bend = 1.25 * plane.bend * plane.bend;
+  const double bend = 1.25 * plane.bend_variance;
   const double offset = plane.normal.dot(patches_.means[k] - plane.mean);
-  if (offset * offset > gate * plane.sigma * plane.sigma / count + bend) return false;
-  return spreadOf(patch, plane.normal) <= gate * plane.spread_sigma * plane.spread_sigma + bend;
+  if (offset * offset > gate * plane.variance / count + bend) return false;
+  return spreadOf(patch, plane.normal) <= gate * plane.spread_variance + bend;
 }
 
 const WindowFit* PatchNormals::bestWindow(int patch, int radius) {
   // A plain surface, which is most of a scan, needs no look at the shifted windows.
   const WindowFit& own = fit(patch, radius);
   if (own.flat() && own.surprise < 1.0 && fits(patch, own)) return &own;
-  // Fitting the other windows overwrites `window_`, so the candidates are kept apart.
-  neighborhood_(patch, radius, candidates_);
+  windows_.shifted(patch, radius, candidates_);
   const WindowFit* best = nullptr;
   for (const int center : candidates_) {
     const WindowFit& candidate = fit(center, radius);
@@ -218,12 +216,14 @@ int PatchNormals::choose(int patch, int radius, PatchNormal& result) {
   const double tolerance = params_.normal_error * params_.normal_error;
   if (best == nullptr) {
     const WindowFit& own = fits_[static_cast<std::size_t>(patch)];
-    return own.found() && own.angle_variance <= tolerance ? 0 : radius + 1;
+    // Where noise leaves the window certain enough, structure is what bends it: a wider one has
+    // more.
+    return own.found() && own.least_angle_variance <= tolerance ? 0 : radius + 1;
   }
   if (best->angle_variance > tolerance) return sufficientRadius(*best, radius);
   const Eigen::Vector3d to_viewpoint = viewpoint_ - patches_.means[static_cast<std::size_t>(patch)];
   const bool away = best->normal.dot(to_viewpoint) < 0.0;
-  result = {away ? Eigen::Vector3d(-best->normal) : best->normal, best->model_sigma};
+  result = {away ? Eigen::Vector3d(-best->normal) : best->normal, std::sqrt(best->model_variance)};
   return 0;
 }
 

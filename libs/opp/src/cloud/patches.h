@@ -5,7 +5,6 @@
 #include <Eigen/Core>
 
 #include <cstddef>
-#include <functional>
 #include <vector>
 
 namespace opp {
@@ -47,8 +46,34 @@ struct Patches {
   }
 };
 
-/// Lists the patches around a patch, itself included, in a window of the given radius (in
-/// patches): replaces the vector's content.
-using Neighborhood = std::function<void(int patch, int radius, std::vector<int>& window)>;
+/// What a window of patches adds up to: points, and for n points in each patch the second moments
+/// of the patches' means, Σ n m mᵀ (xx, xy, xz, yy, yz, zz).
+struct WindowSums {
+  Eigen::Array<double, 16, 1> values = Eigen::Array<double, 16, 1>::Zero();
+  int patches = 0;
+  /// The patches fill a square of a grid, so that their rays spread in two directions.
+  bool complete = false;
+
+  void add(const MomentSums& patch, const Eigen::Vector3d& mean) {
+    values.head<10>() += patch;
+    const Eigen::Vector3d first = patch.segment<3>(1);  // n m
+    values.segment<3>(10) += first.x() * mean.array();
+    values.segment<2>(13) += first.y() * mean.tail<2>().array();
+    values[15] += first.z() * mean.z();
+    ++patches;
+  }
+};
+
+/// Windows around patches, of a radius in patches. One thread at a time: implementations may keep
+/// scratch.
+class PatchWindows {
+ public:
+  virtual ~PatchWindows() = default;
+  virtual WindowSums sums(int patch, int radius) = 0;
+  /// Patches of the window, itself included: replaces the vector's content.
+  virtual void members(int patch, int radius, std::vector<int>& members) = 0;
+  /// Patches whose windows hold this patch and differ most: replaces the vector's content.
+  virtual void shifted(int patch, int radius, std::vector<int>& centers) = 0;
+};
 
 }  // namespace opp

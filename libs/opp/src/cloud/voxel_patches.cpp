@@ -24,15 +24,56 @@ struct MeansAdaptor {
   }
 };
 
-struct MeansTree {
+class NearestWindows final : public PatchWindows {
+ public:
+  explicit NearestWindows(const Patches& patches)
+      : patches_(patches), adaptor_{patches.means}, tree_(3, adaptor_) {
+    tree_.buildIndex();
+  }
+
+  WindowSums sums(int patch, int radius) override {
+    WindowSums window;
+    for (const int i : nearest(patch, radius)) {
+      const auto k = static_cast<std::size_t>(i);
+      window.add(patches_.sums[k], patches_.means[k]);
+    }
+    return window;
+  }
+
+  void members(int patch, int radius, std::vector<int>& members) override {
+    members = nearest(patch, radius);
+  }
+
+  void shifted(int patch, int radius, std::vector<int>& centers) override {
+    centers = nearest(patch, radius);
+  }
+
+ private:
   using Tree =
       nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<double, MeansAdaptor>,
                                           MeansAdaptor, 3>;
-  explicit MeansTree(const std::vector<Eigen::Vector3d>& means) : adaptor{means}, tree(3, adaptor) {
-    tree.buildIndex();
+  /// The last window is kept: its sums and members are asked for in turn.
+  const std::vector<int>& nearest(int patch, int radius) {
+    if (patch == patch_ && radius == radius_) return window_;
+    const auto side = static_cast<std::size_t>(2 * radius + 1);
+    indices_.resize(std::min(patches_.size(), side * side));
+    distances_.resize(indices_.size());
+    const std::size_t found =
+        tree_.knnSearch(patches_.means[static_cast<std::size_t>(patch)].data(), indices_.size(),
+                        indices_.data(), distances_.data());
+    window_.assign(indices_.begin(), indices_.begin() + static_cast<std::ptrdiff_t>(found));
+    patch_ = patch;
+    radius_ = radius;
+    return window_;
   }
-  MeansAdaptor adaptor;
-  Tree tree;
+
+  const Patches& patches_;
+  MeansAdaptor adaptor_;
+  Tree tree_;
+  int patch_ = -1, radius_ = -1;
+  std::vector<int> window_;
+  std::vector<unsigned int> indices_;
+  std::vector<double> distances_;
 };
 
 }  // namespace
@@ -58,19 +99,8 @@ Patches makeVoxelPatches(const std::vector<Eigen::Vector3f>& points, double edge
   return patches;
 }
 
-Neighborhood nearestPatches(const Patches& patches) {
-  const auto tree = std::make_shared<const MeansTree>(patches.means);
-  return [tree, &patches](int patch, int radius, std::vector<int>& window) {
-    const auto side = static_cast<std::size_t>(2 * radius + 1);
-    const std::size_t count = std::min(patches.size(), side * side);
-    std::vector<unsigned int> indices(count);
-    std::vector<double> distances(count);
-    const std::size_t found =
-        tree->tree.knnSearch(patches.means[static_cast<std::size_t>(patch)].data(), count,
-                             indices.data(), distances.data());
-    window.clear();
-    for (std::size_t k = 0; k < found; ++k) window.push_back(static_cast<int>(indices[k]));
-  };
+std::unique_ptr<PatchWindows> nearestPatches(const Patches& patches) {
+  return std::make_unique<NearestWindows>(patches);
 }
 
 }  // namespace opp

@@ -6,7 +6,6 @@
 
 #include <Eigen/Core>
 
-#include <cstddef>
 #include <memory>
 #include <vector>
 
@@ -16,7 +15,7 @@ namespace opp {
 Patches makeVoxelPatches(const std::vector<Eigen::Vector3f>& points, double edge);
 
 /// Windows of the (2·radius + 1)² nearest patches, as many as a window of a grid has. `patches`
-/// must outlive it. O(log patches) each.
-Neighborhood nearestPatches(const Patches& patches);
+/// must outlive it. O(log patches + window) each.
+std::unique_ptr<PatchWindows> nearestPatches(const Patches& patches);
 
 }  // namespace opp
