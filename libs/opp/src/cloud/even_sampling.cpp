@@ -46,13 +46,18 @@ constexpr double kEdgeRatio = 2.5;
 /// Grows samples one entry at a time.
 class Sampler {
  public:
-  Sampler(const Extent& extent, double spacing, const SamplingParams& params)
+  /// Room for `expected` samples before memory has to grow.
+  Sampler(const Extent& extent, double spacing, std::size_t expected, const SamplingParams& params)
       : spacing_(spacing),
         cos_merge_(static_cast<float>(std::cos(params.merge_angle))),
         gate_(params.gate),
         tilt_(std::tan(params.normal_error) * spacing),
-        table_(extent.low, kEdgeRatio * spacing,
-               static_cast<std::size_t>(params.target_samples / (kEdgeRatio * kEdgeRatio))) {}
+        table_(
+            extent.low, kEdgeRatio * spacing,
+            static_cast<std::size_t>(static_cast<double>(expected) / (kEdgeRatio * kEdgeRatio))) {
+    seeds_.reserve(expected);
+    sums_.reserve(expected);
+  }
 
   void add(const Eigen::Vector3f& point, const Eigen::Vector3f& normal, float sigma, float weight) {
     int sample = nearest(point, normal, sigma, weight);
@@ -66,6 +71,10 @@ class Sampler {
   }
 
   void write(OrientedCloud& out) const {
+    out.points.reserve(seeds_.size());
+    out.normals.reserve(seeds_.size());
+    out.sigmas.reserve(seeds_.size());
+    out.weights.reserve(seeds_.size());
     for (std::size_t i = 0; i < seeds_.size(); ++i) {
       const Sums& s = sums_[i];
       const Eigen::Vector3d point = seeds_[i].point.cast<double>() + s.offset / s.weight;
@@ -191,7 +200,8 @@ OrientedCloud sampleEvenly(const OrientedCloud& dense, double spacing,
   result.viewpoint = dense.viewpoint;
   const Extent extent = extentOf(dense.points);
   result.spacing = std::max(spacing, smallestCell(extent));
-  Sampler sampler(extent, result.spacing, params);
+  const auto target = static_cast<std::size_t>(params.target_samples);
+  Sampler sampler(extent, result.spacing, std::min(dense.size(), target), params);
   for (std::size_t i = 0; i < dense.size(); ++i) {
     sampler.add(dense.points[i], dense.normals[i], dense.sigmas[i], dense.weights[i]);
   }

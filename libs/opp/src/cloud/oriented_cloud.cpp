@@ -35,6 +35,13 @@ bool inRange(const Eigen::Vector3f& point, const PointCloud& cloud, const Sensor
   return range >= sensor.min_range && range <= sensor.max_range;
 }
 
+void reserve(OrientedCloud& cloud, std::size_t count) {
+  cloud.points.reserve(count);
+  cloud.normals.reserve(count);
+  cloud.sigmas.reserve(count);
+  cloud.weights.reserve(count);
+}
+
 void append(OrientedCloud& cloud, const Eigen::Vector3f& point, const Eigen::Vector3f& normal,
             double sigma, double weight) {
   cloud.points.push_back(point);
@@ -46,6 +53,7 @@ void append(OrientedCloud& cloud, const Eigen::Vector3f& point, const Eigen::Vec
 /// The points with a usable normal, turned to the viewpoint.
 OrientedCloud fromGivenNormals(const PointCloud& cloud, const SensorModel& sensor) {
   OrientedCloud dense;
+  reserve(dense, cloud.size());
   for (std::size_t i = 0; i < cloud.size(); ++i) {
     const Eigen::Vector3d normal = cloud.normals[i].cast<double>();
     const double length = normal.norm();
@@ -66,6 +74,7 @@ OrientedCloud fromPatches(const Patches& patches, PatchWindows& windows, const P
   PatchNormals estimator(patches, windows, cloud.viewpoint.cast<double>(), sensor, params);
   const std::vector<PatchNormal> normals = estimator.estimate();
   OrientedCloud dense;
+  reserve(dense, patches.size());
   for (std::size_t i = 0; i < patches.size(); ++i) {
     if (normals[i].normal.isZero()) continue;
     append(dense, (patches.origin + patches.means[i]).cast<float>(),

@@ -103,7 +103,8 @@ OppHypotheses detectAtAll(const VotingScene& scene, const VoteThresholds& thresh
 }
 
 /// Rounds of at most `budget` reference points in all, each spread over the samples that the planes
-/// of the rounds before left open. With `stop_early` a round that closes none is the last.
+/// of the rounds before left open. With `stop_early` a round that closes fewer samples than it had
+/// reference points is the last.
 void detectInRounds(const VotingScene& scene, const VoteThresholds& thresholds, int budget,
                     bool stop_early, int threads, OpenSamples& open, OppHypotheses& found) {
   std::vector<std::uint8_t> taken(scene.samples.size(), 0);
@@ -113,7 +114,7 @@ void detectInRounds(const VotingScene& scene, const VoteThresholds& thresholds, 
     if (references.empty()) return;
     const OppHypotheses round = detectAtAll(scene, thresholds, references, threads);
     append(round, found);
-    if (open.close(round.planes) == 0 && stop_early) return;
+    if (open.close(round.planes) < references.size() && stop_early) return;
   }
 }
 
