@@ -1,18 +1,25 @@
 // SPDX-FileCopyrightText: 2026 The opp-mapping authors
 // SPDX-License-Identifier: BSD-3-Clause
 // Time of each stage from a depth image or from samples to corners, on one thread. Every benchmark
-// runs the whole chain and reports the stage that it is named after.
+// runs the whole chain; fromDepth and fromSamples report the stage that they are named after,
+// recorded reports all stages of a scan of the shared data as counters [ms].
 #include "opp/cloud/oriented_cloud.h"
 #include "opp/detect_primitives.h"
+#include "opp/mapping/io/cloud_file.h"
+#include "opp/mapping/io/rawlog_reader.h"
 
 #include "support/depth_image.h"
 #include "support/random.h"
+#include "support/shared_data.h"
 #include "support/synthetic_room.h"
 
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
+#include <string>
+#include <utility>
 
 namespace opp {
 namespace {
@@ -108,6 +115,37 @@ void wholeChain(benchmark::State& state) {
   report(state, found);
 }
 
+/// The cloud of a file of the shared data; of a rawlog the first one.
+PointCloud recordedCloud(const std::filesystem::path& path) {
+  if (path.extension() != ".rawlog") return mapping::readCloudFile(path);
+  auto scan = mapping::RawlogReader(path, {}).nextScan();
+  return scan ? std::move(scan->cloud_in_body) : PointCloud();
+}
+
+void recorded(benchmark::State& state, const std::string& name) {
+  const std::filesystem::path path = test::sharedData(name);
+  if (!std::filesystem::exists(path)) return state.SkipWithError("the shared data are not there");
+  const PointCloud cloud = recordedCloud(path);
+  PrimitiveParams params;
+  if (cloud.hasNormals()) params.sensor.min_range = 0.0;  // as opp-detect for clouds
+  Primitives found;
+  StageTimings sum, timings;
+  const std::pair<const char*, Stage> stages[] = {
+      {"normals", &StageTimings::normals},       {"sampling", &StageTimings::sampling},
+      {"voting", &StageTimings::voting},         {"clustering", &StageTimings::clustering},
+      {"refinement", &StageTimings::refinement}, {"corners_", &StageTimings::corners},
+      {"lines_", &StageTimings::lines}};
+  for (auto _ : state) {
+    found = detectPrimitives(makeOrientedCloud(cloud, params.sensor, params.sampling, &timings),
+                             params, 1, &timings);
+    for (const auto& stage : stages) sum.*stage.second += timings.*stage.second;
+  }
+  report(state, found);
+  for (const auto& [label, stage] : stages) {
+    state.counters[label] = 1e3 * sum.*stage / static_cast<double>(state.iterations());
+  }
+}
+
 void imageSizes(benchmark::internal::Benchmark* bench) {
   for (const int pixels : {19200, 76800, 307200}) bench->Arg(pixels);
   bench->Unit(benchmark::kMillisecond);
@@ -126,6 +164,11 @@ BENCHMARK_CAPTURE(fromSamples, refinement, &StageTimings::refinement)->Apply(sam
 BENCHMARK_CAPTURE(fromSamples, lines, &StageTimings::lines)->Apply(sampleCounts);
 BENCHMARK_CAPTURE(fromSamples, corners, &StageTimings::corners)->Apply(sampleCounts);
 BENCHMARK(wholeChain)->Apply(imageSizes);
+BENCHMARK_CAPTURE(recorded, icl_nuim, "fixtures/icl_nuim_frame.ply")->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(recorded, icl, "icl_of_kt3.rawlog")->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(recorded, tum, "tum_fr3_structure_notexture_far.rawlog")
+    ->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(recorded, kinect, "fixtures/tests_rgbd.rawlog")->Unit(benchmark::kMillisecond);
 
 }  // namespace
 }  // namespace opp

@@ -214,7 +214,7 @@ class Refiner {
     result.edges = structure_.edges;
     result.labels = labels_;
     result.converged = converged_ || fits_.empty();
-    result.normal_covariance = solution_.covariance;
+    result.normal_covariance = normalCovariance(normalProblem(), solution_.normals);
     for (Index f = 0; f < structure_.families.size(); ++f) {
       result.families.push_back({solution_.normals[f], structure_.families[f]});
     }

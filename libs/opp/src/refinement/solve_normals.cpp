@@ -93,21 +93,6 @@ void orthonormalize(const NormalProblem::Frame& frame, Normals& normals) {
   }
 }
 
-Eigen::MatrixXd covarianceOf(const NormalProblem& problem, const Normals& normals) {
-  const Layout layout = layoutOf(problem);
-  Eigen::MatrixXd information = linearize(problem, normals).information;
-  information.diagonal().array() += kPriorInformation;
-  const auto count = static_cast<Eigen::Index>(normals.size());
-  Eigen::MatrixXd tangent_from_parameters = Eigen::MatrixXd::Zero(2 * count, layout.size);
-  for (Eigen::Index k = 0; k < count; ++k) {
-    const auto index = static_cast<std::size_t>(k);
-    const auto jacobian = derivative(normals[index], layout.in_frame[index]);
-    tangent_from_parameters.block(2 * k, layout.first[index], 2, jacobian.cols()) =
-        tangentBasis(normals[index]).transpose() * jacobian;
-  }
-  return tangent_from_parameters * information.ldlt().solve(tangent_from_parameters.transpose());
-}
-
 }  // namespace
 
 double energy(const NormalProblem& problem, const Normals& normals) {
@@ -139,11 +124,22 @@ NormalSystem linearize(const NormalProblem& problem, const Normals& normals) {
     const auto b = static_cast<std::size_t>(edge.normals[1]);
     const auto jacobian_a = derivative(normals[a], layout.in_frame[a]);
     const auto jacobian_b = derivative(normals[b], layout.in_frame[b]);
-    Eigen::VectorXd row = Eigen::VectorXd::Zero(layout.size);
-    row.segment(layout.first[a], jacobian_a.cols()) += jacobian_a.transpose() * normals[b];
-    row.segment(layout.first[b], jacobian_b.cols()) += jacobian_b.transpose() * normals[a];
-    system.information += edge.information * row * row.transpose();
-    system.gradient += edge.information * normals[a].dot(normals[b]) * row;
+    // The cosine's derivative has these two parts; only their blocks change.
+    const Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 3, 1> row_a =
+        jacobian_a.transpose() * normals[b];
+    const Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 3, 1> row_b =
+        jacobian_b.transpose() * normals[a];
+    const auto add = [&](std::size_t k, const auto& row_k, std::size_t l, const auto& row_l) {
+      system.information.block(layout.first[k], layout.first[l], row_k.size(), row_l.size()) +=
+          edge.information * row_k * row_l.transpose();
+    };
+    add(a, row_a, a, row_a);
+    add(a, row_a, b, row_b);
+    add(b, row_b, a, row_a);
+    add(b, row_b, b, row_b);
+    const double pull = edge.information * normals[a].dot(normals[b]);
+    system.gradient.segment(layout.first[a], row_a.size()) += pull * row_a;
+    system.gradient.segment(layout.first[b], row_b.size()) += pull * row_b;
   }
   return system;
 }
@@ -178,7 +174,7 @@ NormalSolution solveNormals(const NormalProblem& problem, const Normals& initial
     NormalSystem system = linearize(problem, solution.normals);
     system.information.diagonal() *= 1.0 + damping;
     system.information.diagonal().array() += kPriorInformation;
-    const Eigen::VectorXd step = -system.information.ldlt().solve(system.gradient);
+    const Eigen::VectorXd step = -system.information.llt().solve(system.gradient);
     solution.converged = step.lpNorm<Eigen::Infinity>() < kStepTolerance;
     const Normals candidate = retract(problem, solution.normals, step);
     const double next = energy(problem, candidate);
@@ -192,8 +188,23 @@ NormalSolution solveNormals(const NormalProblem& problem, const Normals& initial
     }
   }
   for (const auto& frame : problem.frames) orthonormalize(frame, solution.normals);
-  solution.covariance = covarianceOf(problem, solution.normals);
   return solution;
+}
+
+Eigen::MatrixXd normalCovariance(const NormalProblem& problem, const Normals& normals) {
+  check(problem, normals.size());
+  const Layout layout = layoutOf(problem);
+  Eigen::MatrixXd information = linearize(problem, normals).information;
+  information.diagonal().array() += kPriorInformation;
+  const auto count = static_cast<Eigen::Index>(normals.size());
+  Eigen::MatrixXd tangent_from_parameters = Eigen::MatrixXd::Zero(2 * count, layout.size);
+  for (Eigen::Index k = 0; k < count; ++k) {
+    const auto index = static_cast<std::size_t>(k);
+    const auto jacobian = derivative(normals[index], layout.in_frame[index]);
+    tangent_from_parameters.block(2 * k, layout.first[index], 2, jacobian.cols()) =
+        tangentBasis(normals[index]).transpose() * jacobian;
+  }
+  return tangent_from_parameters * information.llt().solve(tangent_from_parameters.transpose());
 }
 
 }  // namespace opp

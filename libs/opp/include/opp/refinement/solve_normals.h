@@ -31,9 +31,6 @@ struct NormalProblem {
 
 struct NormalSolution {
   std::vector<Eigen::Vector3d> normals;
-  /// Joint covariance [rad²]: the 2×2 block (f, g) belongs to the coordinates of n_f and n_g in
-  /// their `tangentBasis`. Directions that the data do not fix have a variance of about 1 rad².
-  Eigen::MatrixXd covariance;
   bool converged = true;
 };
 
@@ -60,5 +57,11 @@ std::vector<Eigen::Vector3d> retract(const NormalProblem& problem,
 /// \throws std::invalid_argument if sizes or indices do not fit or a frame has not 2 or 3 members.
 NormalSolution solveNormals(const NormalProblem& problem,
                             const std::vector<Eigen::Vector3d>& initial);
+
+/// Joint covariance of the solution [rad²]: the 2×2 block (f, g) belongs to the coordinates of n_f
+/// and n_g in their `tangentBasis`. Directions that the data do not fix have a variance of about
+/// 1 rad². \throws std::invalid_argument as `solveNormals`.
+Eigen::MatrixXd normalCovariance(const NormalProblem& problem,
+                                 const std::vector<Eigen::Vector3d>& normals);
 
 }  // namespace opp
