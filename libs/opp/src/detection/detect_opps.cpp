@@ -102,19 +102,17 @@ OppHypotheses detectAtAll(const VotingScene& scene, const VoteThresholds& thresh
   return all;
 }
 
-/// Rounds of at most `budget` reference points in all, each spread over the samples that the planes
-/// of the rounds before left open. With `stop_early` a round that closes fewer samples than it had
-/// reference points is the last.
-void detectInRounds(const VotingScene& scene, const VoteThresholds& thresholds, int budget,
-                    bool stop_early, int threads, OpenSamples& open, OppHypotheses& found) {
+/// Rounds of at most `reference_points` in all, each spread over the samples that the planes of the
+/// rounds before left open, until one closes fewer samples than it had reference points.
+void detectInRounds(const VotingScene& scene, const VoteThresholds& thresholds, int threads,
+                    OpenSamples& open, OppHypotheses& found) {
   std::vector<std::uint8_t> taken(scene.samples.size(), 0);
   const int round_size = scene.params.round_size;
-  for (int left = budget; left > 0; left -= round_size) {
+  for (int left = scene.params.reference_points; left > 0; left -= round_size) {
     const auto references = open.take(scene.grid.order(), std::min(left, round_size), taken);
-    if (references.empty()) return;
     const OppHypotheses round = detectAtAll(scene, thresholds, references, threads);
     append(round, found);
-    if (open.close(round.planes) < references.size() && stop_early) return;
+    if (open.close(round.planes) < references.size() || references.empty()) return;
   }
 }
 
@@ -129,13 +127,15 @@ OppHypotheses detectOpps(const OrientedCloud& cloud, const SensorModel& sensor,
   const std::vector<VotingSample> samples = votingSamples(cloud, sensor, params);
   const double radius = params.neighbourhood * cloud.spacing;
   OpenSamples open(samples, 0.5 * cloud.spacing, params.normal_tolerance);
-  detectInRounds(VotingScene(cloud, samples, params, radius), thresholds, params.reference_points,
-                 true, threads, open, found);
-  if (open.empty()) return found;
+  detectInRounds(VotingScene(cloud, samples, params, radius), thresholds, threads, open, found);
+  if (open.empty() || params.narrow_reference_points == 0) return found;
   // Planes that fill little of the wide neighbourhood get few of its votes: what is left over votes
-  // again among its nearest.
-  detectInRounds(VotingScene(cloud, samples, params, radius / params.narrowing), thresholds,
-                 params.narrow_reference_points, false, threads, open, found);
+  // again among its nearest. All at once: few partners make poor planes, which must not close the
+  // samples of better ones.
+  const VotingScene narrow(cloud, samples, params, radius / params.narrowing);
+  std::vector<std::uint8_t> taken(samples.size(), 0);
+  const auto references = open.take(narrow.grid.order(), params.narrow_reference_points, taken);
+  append(detectAtAll(narrow, thresholds, references, threads), found);
   return found;
 }
 
