@@ -43,7 +43,8 @@ struct TrajectoryError {
   /// Aligned by positions and orientations, see alignPoses: for maps that go with the trajectory.
   Eigen::Isometry3d gt_map_from_est_map = Eigen::Isometry3d::Identity();
   ErrorStatistics ate_translation;  ///< |p_gt − gt_from_est·p_est| [m]
-  ErrorStatistics ate_rotation;     ///< angle between both orientations, after alignment [rad]
+  /// Angle between R_gt and R_est turned by gt_map_from_est_map [rad].
+  ErrorStatistics ate_rotation;
   /// Error of the motion from one matched pose to the next; needs no alignment.
   ErrorStatistics rpe_frame_translation;  ///< [m]
   ErrorStatistics rpe_frame_rotation;     ///< [rad]
