@@ -11,6 +11,7 @@
 #include <Eigen/Eigenvalues>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <numeric>
 
 namespace opp::mapping {
@@ -146,6 +147,32 @@ TEST(MatchScan, ASingleWallFixesThreeDirectionsAndThePriorTheRest) {
   EXPECT_NEAR(error[5], 0.01, 1e-3);
   const Eigen::SelfAdjointEigenSolver<Matrix6d> eigen(result.information);
   EXPECT_LT(eigen.eigenvalues()[2], 1e-6 * eigen.eigenvalues()[3]);
+}
+
+TEST(MatchScan, NoiseOnABareWallDoesNotPassForStructure) {
+  const test::Rectangles wall = {{{2.0, 0.0, 1.3}, {0.0, 0.0, 1.0}, {0.0, 1.5, 0.0}}};
+  test::SyntheticOptions noisy = options(0.003);
+  noisy.normal_sigma = degToRad(2.0);
+  for (std::uint64_t seed = 0; seed < 20; ++seed) {
+    for (const bool with_landmarks : {true, false}) {
+      const ScanAndMap both = seeTwice(wall, seed, with_landmarks, noisy);
+      PosePrior prior;
+      prior.map_from_body = both.map_from_body;
+      prior.map_from_body.translation() += Eigen::Vector3d(0.01, 0.02, 0.01);
+      // Known to 1 cm and 1°: noise must not take the prediction's place along the wall.
+      prior.information.diagonal() << Eigen::Vector3d::Constant(std::pow(degToRad(1.0), -2)),
+          Eigen::Vector3d::Constant(1e4);
+      const MatchResult result = matchScan(both.scan, both.map, prior, RegistrationParams{});
+      const Eigen::Vector3d error =
+          result.map_from_body.translation() - both.map_from_body.translation();
+      EXPECT_NEAR(error.x(), 0.0, 2e-3) << seed << with_landmarks;
+      EXPECT_NEAR(error.y(), 0.02, 3e-3) << seed << with_landmarks;
+      EXPECT_NEAR(error.z(), 0.01, 3e-3) << seed << with_landmarks;
+      EXPECT_LT(result.covariance(3, 3), 1e-5) << seed << with_landmarks;
+      EXPECT_GT(result.covariance(4, 4), 0.5e-4) << seed << with_landmarks;
+      EXPECT_GT(result.covariance(5, 5), 0.5e-4) << seed << with_landmarks;
+    }
+  }
 }
 
 TEST(MatchScan, EmptyScanOrMapKeepsThePrior) {

@@ -6,6 +6,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 namespace opp::mapping {
 namespace {
 
@@ -20,34 +22,76 @@ TEST(MotionModel, KnowsNothingBeforeTheFirstPose) {
   EXPECT_TRUE(prior.information.isZero());
 }
 
+/// Information of a pose known to a micrometre: exact, for our purpose.
+Matrix6d exact() { return 1e12 * Matrix6d::Identity(); }
+
+double sigma(const PosePrior& prior, int k) {
+  return std::sqrt(Matrix6d(prior.information.inverse())(k, k));
+}
+
 TEST(MotionModel, StaysPutWhileNoVelocityIsKnown) {
   MotionModel model(FrontendParams{});
   const Eigen::Isometry3d pose = test::Random(1).pose(3.0);
-  model.update({10.0, pose}, std::nullopt);
+  model.start({10.0, pose}, std::nullopt);
   EXPECT_TRUE(model.predict(10.5, std::nullopt).map_from_body.isApprox(pose, 1e-12));
 }
 
-TEST(MotionModel, PredictsConstantVelocityExactlyAtUnevenTimes) {
+TEST(MotionModel, LearnsAConstantVelocityAtUnevenTimes) {
   test::Random random(2);
   for (int k = 0; k < 50; ++k) {
     const Eigen::Isometry3d start = random.pose(3.0);
     Vector6d rate;
     rate << random.vector(1.0), random.vector(1.0);
     MotionModel model(FrontendParams{});
-    model.update({0.0, start}, std::nullopt);
-    model.update({0.3, moving(start, rate, 0.3)}, std::nullopt);
-    const PosePrior prior = model.predict(0.8, std::nullopt);
-    EXPECT_TRUE(prior.map_from_body.isApprox(moving(start, rate, 0.8), 1e-9));
+    model.start({0.0, start}, std::nullopt);
+    double time = 0.0;
+    for (int step = 0; step < 20; ++step) {
+      time += random.uniform(0.05, 0.1);
+      model.update({time, moving(start, rate, time)}, std::nullopt, exact());
+    }
+    // Exact poses and white accelerations: a wrong velocity shrinks by 2 - √3 a step.
+    const PosePrior prior = model.predict(time + 0.5, std::nullopt);
+    EXPECT_TRUE(prior.map_from_body.isApprox(moving(start, rate, time + 0.5), 1e-6));
   }
 }
 
 TEST(MotionModel, TrustsItselfLessTheLongerAgo) {
   MotionModel model(FrontendParams{});
-  model.update({0.0, Eigen::Isometry3d::Identity()}, std::nullopt);
-  model.update({0.1, Eigen::Isometry3d::Identity()}, std::nullopt);
-  const Matrix6d soon = model.predict(0.2, std::nullopt).information;
-  const Matrix6d late = model.predict(1.1, std::nullopt).information;
-  for (int k = 0; k < 6; ++k) EXPECT_GT(soon(k, k), late(k, k));
+  model.start({0.0, Eigen::Isometry3d::Identity()}, std::nullopt);
+  model.update({0.1, Eigen::Isometry3d::Identity()}, std::nullopt, exact());
+  const PosePrior soon = model.predict(0.2, std::nullopt), late = model.predict(1.1, std::nullopt);
+  for (int k = 0; k < 6; ++k) EXPECT_GT(sigma(late, k), 2.0 * sigma(soon, k));
+}
+
+TEST(MotionModel, ADirectionThatNoScanFixesGrowsUncertainTheOthersDoNot) {
+  Matrix6d all_but_x = exact();
+  all_but_x(3, 3) = 0.0;
+  MotionModel model(FrontendParams{});
+  model.start({0.0, Eigen::Isometry3d::Identity()}, std::nullopt);
+  for (int step = 1; step <= 10; ++step)
+    model.update({0.1 * step, Eigen::Isometry3d::Identity()}, std::nullopt, exact());
+  const double first = sigma(model.predict(1.1, std::nullopt), 3);
+  double last = 0.0;
+  for (int step = 11; step <= 20; ++step) {
+    const PosePrior prior = model.predict(0.1 * step, std::nullopt);
+    EXPECT_GT(sigma(prior, 3), last);
+    EXPECT_NEAR(sigma(prior, 4), first, 1e-3 * first);
+    last = sigma(prior, 3);
+    model.update({0.1 * step, Eigen::Isometry3d::Identity()}, std::nullopt, all_but_x);
+  }
+  // White accelerations alone: a·√(0.1 s·t³/3) after t = 1 s; the velocity was not exact before.
+  EXPECT_GT(last, FrontendParams().acceleration * std::sqrt(0.1 / 3.0));
+}
+
+TEST(MotionModel, OdometryErrorsAddUpWhereNoScanHelps) {
+  const FrontendParams params;
+  MotionModel model(params);
+  const Eigen::Isometry3d still = Eigen::Isometry3d::Identity();
+  model.start({0.0, still}, still);
+  for (int step = 1; step <= 8; ++step) model.update({0.1 * step, still}, still, Matrix6d::Zero());
+  // The ninth step of independent errors: √9 = 3 times that of one.
+  EXPECT_NEAR(sigma(model.predict(0.9, still), 4), 3.0 * params.odometry_noise_translation, 1e-9);
+  EXPECT_NEAR(sigma(model.predict(0.9, still), 0), 3.0 * params.odometry_noise_rotation, 1e-9);
 }
 
 TEST(MotionModel, FollowsOdometryWhereThereIsSome) {
@@ -56,7 +100,7 @@ TEST(MotionModel, FollowsOdometryWhereThereIsSome) {
     const Eigen::Isometry3d map_from_body = random.pose(3.0), odom_from_body = random.pose(3.0);
     const Eigen::Isometry3d step = random.motion(0.5, 0.5);
     MotionModel model(FrontendParams{});
-    model.update({0.0, map_from_body}, odom_from_body);
+    model.start({0.0, map_from_body}, odom_from_body);
     const PosePrior prior = model.predict(0.1, odom_from_body * step);
     EXPECT_TRUE(prior.map_from_body.isApprox(map_from_body * step, 1e-9));
   }
@@ -64,21 +108,39 @@ TEST(MotionModel, FollowsOdometryWhereThereIsSome) {
 
 TEST(MotionModel, KeepsItsVelocityInTheBodyWhenTheMapMoves) {
   test::Random random(4);
-  const Eigen::Isometry3d first = random.pose(3.0), second = first * random.motion(0.2, 0.2);
-  const Eigen::Isometry3d new_from_old = random.pose(1.0);
-  MotionModel model(FrontendParams{});
-  model.update({0.0, first}, std::nullopt);
-  model.update({0.1, second}, std::nullopt);
-  const Eigen::Isometry3d before = model.predict(0.2, std::nullopt).map_from_body;
-  model.correct(new_from_old * second);
-  const Eigen::Isometry3d after = model.predict(0.2, std::nullopt).map_from_body;
-  EXPECT_TRUE(after.isApprox(new_from_old * before, 1e-9));
+  for (int k = 0; k < 50; ++k) {
+    const Eigen::Isometry3d first = random.pose(3.0), second = first * random.motion(0.2, 0.2);
+    const Eigen::Isometry3d new_from_old = random.pose(1.0);
+    MotionModel model(FrontendParams{});
+    model.start({0.0, first}, std::nullopt);
+    model.update({0.1, second}, std::nullopt, exact());
+    const Eigen::Isometry3d before = model.predict(0.2, std::nullopt).map_from_body;
+    model.correct(new_from_old * second);
+    const Eigen::Isometry3d after = model.predict(0.2, std::nullopt).map_from_body;
+    EXPECT_TRUE(after.isApprox(new_from_old * before, 1e-9));
+  }
+}
+
+TEST(MotionModel, TellsWhatMotionKnowsSinceAKeyframe) {
+  const FrontendParams params;
+  const Eigen::Isometry3d still = Eigen::Isometry3d::Identity();
+  MotionModel model(params);
+  model.start({0.0, still}, still);
+  Eigen::Isometry3d odometry = still;
+  odometry.translation().x() = 2.0;
+  // Odometry: a ratio of the way. Without: accelerations over the time.
+  const double of_odometry = std::hypot(params.odometry_noise_translation, 2.0 * 0.05);
+  EXPECT_NEAR(model.informationSinceAnchor(1.0, odometry)(3, 3), std::pow(of_odometry, -2), 1e-9);
+  const double of_velocity = params.acceleration * std::sqrt(0.1 / 3.0);
+  EXPECT_NEAR(model.informationSinceAnchor(1.0, std::nullopt)(3, 3), std::pow(of_velocity, -2),
+              1e-9);
 }
 
 TEST(MotionModel, StampsThatDoNotAdvanceGiveFinitePredictions) {
   MotionModel model(FrontendParams{});
-  model.update({5.0, Eigen::Isometry3d::Identity()}, std::nullopt);
-  model.update({5.0, test::Random(5).pose(1.0)}, std::nullopt);
+  model.start({5.0, Eigen::Isometry3d::Identity()}, std::nullopt);
+  model.update({5.0, test::Random(5).pose(1.0)}, std::nullopt, Matrix6d::Zero());
+  model.update({4.9, test::Random(6).pose(1.0)}, std::nullopt, exact());
   const PosePrior prior = model.predict(4.0, std::nullopt);
   EXPECT_TRUE(prior.map_from_body.matrix().allFinite());
   EXPECT_TRUE(prior.information.allFinite());

@@ -11,6 +11,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 namespace opp::mapping {
 namespace {
 
@@ -127,6 +129,105 @@ TEST(Tracker, FollowsAMapThatMoved) {
   const Vector6d error = difference(new_from_old * truth, result.match.map_from_body);
   EXPECT_LT(error.head<3>().norm(), 2e-3);
   EXPECT_LT(error.tail<3>().norm(), 2e-3);
+}
+
+/// A wall as a body sees it that flies along it, `y` [m] from where it started.
+ScanFeatures wallFrom(double y, double timestamp) {
+  const test::Rectangles wall = {{{2.0, 0.0, 1.3}, {0.0, 0.0, 2.0}, {0.0, 4.0, 0.0}}};
+  test::SyntheticOptions options;
+  options.spacing = 0.08;
+  options.sigma = 0.003;
+  options.normal_sigma = 0.02;
+  options.seed = static_cast<std::uint64_t>(1000.0 * timestamp);
+  Eigen::Isometry3d scene_from_body = Eigen::Isometry3d::Identity();
+  scene_from_body.translation() = Eigen::Vector3d(0.0, y, 1.2);
+  ScanFeatures scan = test::trueFeatures(
+      test::sampleScene(wall, scene_from_body.translation(), scene_from_body.inverse(), options));
+  scan.timestamp = timestamp;
+  return scan;
+}
+
+Eigen::Isometry3d beside(double y) {
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+  pose.translation() = Eigen::Vector3d(0.0, y, 1.2);
+  return pose;
+}
+
+Started startAtWall(const std::optional<Eigen::Isometry3d>& odometry) {
+  Started started;
+  MatchResult match;
+  match.map_from_body = beside(0.0);
+  insertKeyframe(wallFrom(0.0, 0.0), match, SensorModel(), started.map);
+  started.tracker.start({0.0, beside(0.0)}, odometry);
+  started.tracker.setLocalMap(localMapOf(started.map, {0}, MapperParams()));
+  return started;
+}
+
+TEST(Tracker, ABareWallEndsInLostWithoutOdometry) {
+  Started started = startAtWall(std::nullopt);
+  double sigma = 0.0;
+  for (int step = 1; step <= 15; ++step) {
+    const double time = 0.02 * step;
+    const TrackResult result =
+        started.tracker.track(wallFrom(0.5 * time, time), std::nullopt, started.map);
+    if (!result.localized()) {
+      EXPECT_EQ(result.outcome, TrackOutcome::kUnobserved);
+      EXPECT_GT(step, 1);
+      return;
+    }
+    // The way along the wall is known from nothing, and ever less.
+    EXPECT_GT(std::sqrt(result.match.covariance(4, 4)), sigma);
+    sigma = std::sqrt(result.match.covariance(4, 4));
+  }
+  FAIL() << "0.3 s without any sight of the way along the wall";
+}
+
+TEST(Tracker, OdometryCarriesABareWall) {
+  Started started = startAtWall(beside(0.0));
+  for (int step = 1; step <= 20; ++step) {
+    const double time = 0.1 * step, y = 0.05 * step;
+    const TrackResult result = started.tracker.track(wallFrom(y, time), beside(y), started.map);
+    ASSERT_TRUE(result.localized()) << "step " << step << ": " << describe(result.outcome);
+    const Vector6d error = difference(beside(y), result.match.map_from_body);
+    EXPECT_LT(error.head<3>().norm(), 3e-3) << "step " << step;
+    EXPECT_LT(error.tail<3>().norm(), 3e-3) << "step " << step;
+    // Independent errors of 5 % of 5 cm and 2 mm a step.
+    EXPECT_NEAR(std::sqrt(result.match.covariance(4, 4)), std::sqrt(step) * 3.2e-3, 1e-3);
+  }
+}
+
+TEST(Tracker, WhatStandsWhereTheMapWasLookedThroughSpeaksAgainstAPose) {
+  for (std::uint64_t room = 0; room < 5; ++room) {
+    Started started = startAt(room, poseAt(0.0, 0.0));
+    ScanFeatures scan = scanOf(room, 1, poseAt(0.0, 0.0));
+    test::Random random(room);
+    for (std::size_t i = 0; i < scan.cloud_in_body.size(); ++i) {
+      if (random.uniform(0.0, 1.0) < 0.45) continue;
+      scan.cloud_in_body.points[i] *= 0.6F;  // far nearer to the sensor than the room
+    }
+    Primitives none;
+    none.labels.assign(scan.cloud_in_body.size(), -1);
+    scan.primitives_in_body = none;
+    const TrackResult result = started.tracker.track(scan, std::nullopt, started.map);
+    EXPECT_GT(result.match.overlap, FrontendParams().min_overlap) << "room " << room;
+    EXPECT_EQ(result.outcome, TrackOutcome::kContradicted) << "room " << room;
+  }
+}
+
+TEST(Likeliest, IsThePoseThatMotionClearlySpeaksFor) {
+  PosePrior prior;
+  prior.information = Matrix6d::Identity();
+  Eigen::Isometry3d near = Eigen::Isometry3d::Identity(), far = near, farther = near;
+  near.translation().x() = 1.0;
+  far.translation().x() = -3.0;
+  farther.translation().x() = 4.0;
+  EXPECT_FALSE(likeliest({}, prior).has_value());
+  EXPECT_TRUE(likeliest({far}, prior)->isApprox(far));
+  EXPECT_FALSE(likeliest({far, near}, prior).has_value());         // 9 − 1 < 9.2
+  EXPECT_TRUE(likeliest({farther, near}, prior)->isApprox(near));  // 16 − 1
+  EXPECT_FALSE(likeliest({farther, near, near}, prior).has_value());
+  far.translation().x() = 100.0;
+  EXPECT_FALSE(likeliest({far}, prior).has_value());
 }
 
 }  // namespace

@@ -2,80 +2,150 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "opp/mapping/frontend/motion_model.h"
 
+#include <Eigen/Cholesky>
+
 #include <algorithm>
 #include <cmath>
 
 namespace opp::mapping {
 namespace {
 
-Matrix6d informationOf(double rotation_sigma, double translation_sigma) {
-  Vector6d diagonal;
-  diagonal << Eigen::Vector3d::Constant(1.0 / (rotation_sigma * rotation_sigma)),
-      Eigen::Vector3d::Constant(1.0 / (translation_sigma * translation_sigma));
-  return diagonal.asDiagonal();
+Vector6d perKind(double of_rotation, double of_translation) {
+  Vector6d vector;
+  vector << Eigen::Vector3d::Constant(of_rotation), Eigen::Vector3d::Constant(of_translation);
+  return vector;
 }
+
+Matrix6d inverse(const Matrix6d& matrix) { return matrix.ldlt().solve(Matrix6d::Identity()); }
 
 /// Stamps that are equal or run backwards must not give infinite velocities.
 constexpr double kMinTimeStep = 1e-3;
+/// For so long an acceleration stays about the same [s].
+constexpr double kAccelerationTime = 0.1;
 
 }  // namespace
 
+void MotionModel::start(const StampedPose& pose,
+                        const std::optional<Eigen::Isometry3d>& odom_from_body) {
+  started_ = true;
+  timestamp_ = pose.timestamp;
+  last_ = State{};
+  last_.map_from_body = pose.map_from_body;
+  last_.covariance.diagonal().tail<6>() = perKind(params_.angular_speed, params_.speed).cwiseAbs2();
+  last_odom_from_body_ = odom_from_body;
+  setAnchor();
+}
+
 void MotionModel::update(const StampedPose& pose,
-                         const std::optional<Eigen::Isometry3d>& odom_from_body) {
-  before_last_ = last_;
-  last_ = pose;
+                         const std::optional<Eigen::Isometry3d>& odom_from_body,
+                         const Matrix6d& information) {
+  if (!started_) return start(pose, odom_from_body);
+  State state = stateAt(pose.timestamp, odom_from_body);
+  const Matrix6d before = state.covariance.topLeftCorner<6, 6>();
+  const Matrix6d before_inverse = inverse(before);
+  const Matrix6d after = inverse(before_inverse + information);
+  // The rate moves with the pose as far as the two go together.
+  const Matrix6d gain = state.covariance.bottomLeftCorner<6, 6>() * before_inverse;
+  state.rate += gain * difference(state.map_from_body, pose.map_from_body);
+  state.covariance.bottomRightCorner<6, 6>() -= gain * (before - after) * gain.transpose();
+  state.covariance.topLeftCorner<6, 6>() = after;
+  state.covariance.bottomLeftCorner<6, 6>() = gain * after;
+  state.covariance.topRightCorner<6, 6>() = after * gain.transpose();
+  state.covariance = 0.5 * (state.covariance + state.covariance.transpose()).eval();
+  state.map_from_body = pose.map_from_body;
+  last_ = state;
+  timestamp_ = pose.timestamp;
   last_odom_from_body_ = odom_from_body;
 }
 
 void MotionModel::correct(const Eigen::Isometry3d& last_pose) {
-  if (!last_) return;
-  const Eigen::Isometry3d new_from_old = last_pose * last_->map_from_body.inverse();
-  last_->map_from_body = last_pose;
-  if (before_last_)
-    before_last_->map_from_body = normalized(new_from_old * before_last_->map_from_body);
+  if (!started_) return;
+  const Eigen::Matrix3d turn = last_pose.linear() * last_.map_from_body.linear().transpose();
+  Matrix12d turns = Matrix12d::Zero();
+  for (int k = 0; k < 12; k += 3) turns.block<3, 3>(k, k) = turn;
+  last_.map_from_body = last_pose;
+  last_.rate = (turns.topLeftCorner<6, 6>() * last_.rate).eval();
+  last_.covariance = (turns * last_.covariance * turns.transpose()).eval();
 }
 
 PosePrior MotionModel::predict(double timestamp,
                                const std::optional<Eigen::Isometry3d>& odom_from_body) const {
-  if (!last_) return {};
-  if (odom_from_body && last_odom_from_body_) {
-    return predictFromOdometry(last_odom_from_body_->inverse() * *odom_from_body);
-  }
-  return predictFromVelocity(timestamp);
+  if (!started_) return {};
+  const State state = stateAt(timestamp, odom_from_body);
+  return {state.map_from_body, inverse(state.covariance.topLeftCorner<6, 6>())};
 }
 
-PosePrior MotionModel::predictFromOdometry(const Eigen::Isometry3d& last_from_now) const {
+MotionModel::State MotionModel::stateAt(
+    double timestamp, const std::optional<Eigen::Isometry3d>& odom_from_body) const {
+  const double step = std::max(timestamp - timestamp_, kMinTimeStep);
+  if (odom_from_body && last_odom_from_body_)
+    return carriedByOdometry(step, last_odom_from_body_->inverse() * *odom_from_body);
+  return carriedByVelocity(step);
+}
+
+MotionModel::State MotionModel::carriedByOdometry(double step,
+                                                  const Eigen::Isometry3d& last_from_now) const {
+  State state;
+  state.map_from_body = normalized(last_.map_from_body * last_from_now);
+  state.rate = difference(last_.map_from_body, state.map_from_body) / step;
+  const Vector6d variance = odometryVariance(last_from_now);
+  state.covariance.topLeftCorner<6, 6>() = last_.covariance.topLeftCorner<6, 6>();
+  state.covariance.diagonal().head<6>() += variance;
+  // Should the odometry end, its last speed is the best guess.
+  state.covariance.diagonal().tail<6>() = variance / (step * step) + agility() * step;
+  return state;
+}
+
+MotionModel::State MotionModel::carriedByVelocity(double step) const {
+  State state;
+  state.map_from_body = retract(last_.map_from_body, step * last_.rate);
+  state.rate = last_.rate;
+  Matrix12d carry = Matrix12d::Identity();
+  carry.topRightCorner<6, 6>() = step * Matrix6d::Identity();
+  state.covariance = carry * last_.covariance * carry.transpose();
+  const Vector6d density = agility();
+  state.covariance.topLeftCorner<6, 6>().diagonal() += density * step * step * step / 3.0;
+  state.covariance.topRightCorner<6, 6>().diagonal() += density * step * step / 2.0;
+  state.covariance.bottomLeftCorner<6, 6>().diagonal() += density * step * step / 2.0;
+  state.covariance.bottomRightCorner<6, 6>().diagonal() += density * step;
+  return state;
+}
+
+Vector6d MotionModel::odometryVariance(const Eigen::Isometry3d& first_from_second) const {
   const double ratio = params_.odometry_noise_ratio;
-  PosePrior prior;
-  prior.map_from_body = normalized(last_->map_from_body * last_from_now);
-  prior.information = informationOf(
-      std::hypot(params_.odometry_noise_rotation, ratio * rotationAngle(last_from_now)),
-      std::hypot(params_.odometry_noise_translation, ratio * last_from_now.translation().norm()));
-  return prior;
+  return perKind(
+             std::hypot(params_.odometry_noise_rotation, ratio * rotationAngle(first_from_second)),
+             std::hypot(params_.odometry_noise_translation,
+                        ratio * first_from_second.translation().norm()))
+      .cwiseAbs2();
+}
+
+Vector6d MotionModel::agility() const {
+  return kAccelerationTime *
+         perKind(params_.angular_acceleration, params_.acceleration).cwiseAbs2();
 }
 
 PosePrior MotionModel::lastPose(double timestamp) const {
-  if (!last_) return {};
-  const double step = std::max(timestamp - last_->timestamp, kMinTimeStep);
+  if (!started_) return {};
+  const double step = std::max(timestamp - timestamp_, kMinTimeStep);
   PosePrior prior;
-  prior.map_from_body = last_->map_from_body;
-  prior.information = informationOf(params_.angular_speed * step, params_.speed * step);
+  prior.map_from_body = last_.map_from_body;
+  prior.information = (perKind(params_.angular_speed, params_.speed) * step)
+                          .cwiseAbs2()
+                          .cwiseInverse()
+                          .asDiagonal();
   return prior;
 }
 
-PosePrior MotionModel::predictFromVelocity(double timestamp) const {
-  if (!before_last_) return lastPose(timestamp);
-  const double step = std::max(timestamp - last_->timestamp, kMinTimeStep);
-  PosePrior prior;
-  const double past_step = std::max(last_->timestamp - before_last_->timestamp, kMinTimeStep);
-  const Vector6d change = difference(before_last_->map_from_body, last_->map_from_body);
-  prior.map_from_body = retract(last_->map_from_body, change * (step / past_step));
-  // A velocity measured over past_step and a constant acceleration a: off by a·step·(step +
-  // past_step)/2.
-  const double error_time = 0.5 * step * (step + past_step);
-  prior.information =
-      informationOf(params_.angular_acceleration * error_time, params_.acceleration * error_time);
-  return prior;
+Matrix6d MotionModel::informationSinceAnchor(
+    double timestamp, const std::optional<Eigen::Isometry3d>& odom_from_body) const {
+  const double time = std::max(timestamp - anchor_.timestamp, kMinTimeStep);
+  Vector6d variance = agility() * time * time * time / 3.0;
+  if (odom_from_body && anchor_.odom_from_body)
+    variance = odometryVariance(anchor_.odom_from_body->inverse() * *odom_from_body);
+  return variance.cwiseInverse().asDiagonal();
 }
+
+void MotionModel::setAnchor() { anchor_ = {timestamp_, last_odom_from_body_}; }
 
 }  // namespace opp::mapping

@@ -4,6 +4,13 @@
 
 #include "opp/mapping/registration/align_globally.h"
 
+#include "registration/scan_model.h"
+#include "registration/verify_pose.h"
+
+#include <Eigen/Eigenvalues>
+
+#include <algorithm>
+#include <limits>
 #include <utility>
 
 namespace opp::mapping {
@@ -18,6 +25,10 @@ std::string_view describe(TrackOutcome outcome) {
       return "there is no map yet";
     case TrackOutcome::kLittleOverlap:
       return "too little of the scan agrees with the map";
+    case TrackOutcome::kContradicted:
+      return "scan and map each show something where the other looked through";
+    case TrackOutcome::kUnobserved:
+      return "the scan leaves a direction open that was not seen for too long";
   }
   return "";
 }
@@ -26,8 +37,7 @@ Tracker::Tracker(const MapperParams& params) : params_(params), motion_(params.f
 
 void Tracker::start(const StampedPose& pose,
                     const std::optional<Eigen::Isometry3d>& odom_from_body) {
-  motion_ = MotionModel(params_.frontend);
-  motion_.update(pose, odom_from_body);
+  motion_.start(pose, odom_from_body);
 }
 
 TrackResult Tracker::track(const ScanFeatures& scan,
@@ -39,46 +49,117 @@ TrackResult Tracker::track(const ScanFeatures& scan,
   if (scan.cloud_in_body.size() == 0) return result;
 
   const Keyframe& newest = map.keyframes.back();
-  result.match = localize(scan, motion_.predict(scan.timestamp, odom_from_body), newest);
-  result.outcome = result.match.overlap >= params_.frontend.min_overlap
-                       ? TrackOutcome::kLocalized
-                       : TrackOutcome::kLittleOverlap;
+  result = localize(scan, motion_.predict(scan.timestamp, odom_from_body), newest);
   if (!result.localized()) return result;
-  motion_.update({scan.timestamp, result.match.map_from_body}, odom_from_body);
+  // Between keyframes, motion ties what neither planes nor points do.
+  result.match.point_information += motion_.informationSinceAnchor(scan.timestamp, odom_from_body);
+  motion_.update({scan.timestamp, result.match.map_from_body}, odom_from_body,
+                 result.match.information);
   result.wants_keyframe = wantsKeyframe(result.match, newest);
   return result;
 }
 
 /// The ladder of DESIGN 3: prediction, then the last pose with no more known than how fast a body
 /// moves, then no guess.
-MatchResult Tracker::localize(const ScanFeatures& scan, const PosePrior& predicted,
+TrackResult Tracker::localize(const ScanFeatures& scan, const PosePrior& predicted,
                               const Keyframe& newest) const {
-  MatchResult best = matchScan(scan, *local_map_, predicted, params_.registration);
-  if (best.overlap >= params_.frontend.doubtful_overlap) return best;
-  // A wrong pose can agree with a good part of a map: the floor fits at many places.
-  MatchResult wide =
-      matchScan(scan, *local_map_, motion_.lastPose(scan.timestamp), params_.registration);
-  if (wide.overlap > best.overlap) best = std::move(wide);
-  if (best.overlap >= params_.frontend.doubtful_overlap) return best;
-  MatchResult global = relocalize(scan, newest);
-  return global.overlap > best.overlap ? global : best;
+  TrackResult best;
+  const PosePrior last = motion_.lastPose(scan.timestamp);
+  const auto better = [&](const PosePrior& prior) {
+    MatchResult match = matchScan(scan, *local_map_, prior, params_.registration);
+    const TrackOutcome outcome = outcomeOf(match, scan, newest);
+    const bool localized = outcome == TrackOutcome::kLocalized;
+    if (best.outcome != TrackOutcome::kNoMap && best.localized() >= localized &&
+        (best.localized() != localized || best.match.overlap >= match.overlap))
+      return;
+    best.outcome = outcome;
+    best.match = std::move(match);
+  };
+  better(predicted);
+  if (convincing(best.match)) return best;
+  better(last);
+  if (convincing(best.match)) return best;
+  if (const auto start = relocalize(scan, last, newest)) better(*start);
+  return best;
 }
 
-MatchResult Tracker::relocalize(const ScanFeatures& scan, const Keyframe& newest) const {
+bool Tracker::convincing(const MatchResult& match) const {
+  return match.overlap >= params_.frontend.doubtful_overlap;
+}
+
+TrackOutcome Tracker::outcomeOf(const MatchResult& match, const ScanFeatures& scan,
+                                const Keyframe& newest) const {
+  if (match.overlap < params_.frontend.min_overlap) return TrackOutcome::kLittleOverlap;
+  // A wrong pose can agree with a good part of a map: the floor fits at many places.
+  if (!convincing(match) && contradicts(match.map_from_body, scan, newest))
+    return TrackOutcome::kContradicted;
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> rotation(
+      match.covariance.topLeftCorner<3, 3>(), Eigen::EigenvaluesOnly);
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> translation(
+      match.covariance.bottomRightCorner<3, 3>(), Eigen::EigenvaluesOnly);
+  const double max_rotation = params_.frontend.max_drift_rotation;
+  const double max_translation = params_.frontend.max_drift_translation;
+  const bool known = rotation.eigenvalues()[2] <= max_rotation * max_rotation &&
+                     translation.eigenvalues()[2] <= max_translation * max_translation;
+  return known ? TrackOutcome::kLocalized : TrackOutcome::kUnobserved;
+}
+
+bool Tracker::contradicts(const Eigen::Isometry3d& map_from_body, const ScanFeatures& scan,
+                          const Keyframe& newest) const {
+  const double slack = std::max(newest.features.cloud_in_body.spacing, scan.cloud_in_body.spacing);
+  const SensorModel& sensor = params_.primitives.sensor;
+  const Verification verification =
+      verifyPose(ScanModel(newest.features, sensor, params_.global_alignment),
+                 ScanModel(scan, sensor, params_.global_alignment),
+                 newest.map_from_body.inverse() * map_from_body, slack, params_.global_alignment);
+  return verification.conflict() > params_.frontend.max_conflict;
+}
+
+std::optional<PosePrior> Tracker::relocalize(const ScanFeatures& scan, const PosePrior& last,
+                                             const Keyframe& newest) const {
   const GlobalAlignment alignment =
       alignGlobally(newest.features, scan, params_.primitives.sensor, params_.global_alignment);
-  if (alignment.outcome != AlignmentOutcome::kAligned) return {};
+  std::optional<Eigen::Isometry3d> pose;
+  if (alignment.outcome == AlignmentOutcome::kAligned) {
+    pose = newest.map_from_body * alignment.target_from_source;
+  } else if (alignment.outcome == AlignmentOutcome::kAmbiguous ||
+             alignment.outcome == AlignmentOutcome::kUnconfirmed) {
+    std::vector<Eigen::Isometry3d> poses;
+    for (const AlignmentHypothesis& h : alignment.hypotheses)
+      poses.push_back(newest.map_from_body * h.target_from_source);
+    pose = likeliest(poses, last);
+  }
   // A start without weight: the alignment saw the same scan, so its information must not count
   // twice.
-  PosePrior start;
-  start.map_from_body = newest.map_from_body * alignment.target_from_source;
-  return matchScan(scan, *local_map_, start, params_.registration);
+  if (!pose) return std::nullopt;
+  return PosePrior{*pose, Matrix6d::Zero()};
 }
 
 bool Tracker::wantsKeyframe(const MatchResult& match, const Keyframe& newest) const {
   const Eigen::Isometry3d newest_from_now = newest.map_from_body.inverse() * match.map_from_body;
   return match.overlap < params_.frontend.keyframe_overlap ||
          rotationAngle(newest_from_now) > params_.frontend.keyframe_rotation;
+}
+
+std::optional<Eigen::Isometry3d> likeliest(const std::vector<Eigen::Isometry3d>& poses,
+                                           const PosePrior& prior) {
+  // Twice the logarithm of the odds of 100 to 1, and the 99.9 % point of χ² with six degrees of
+  // freedom.
+  constexpr double kClearly = 9.2, kPossible = 22.5;
+  double best = std::numeric_limits<double>::infinity(), second = best;
+  std::optional<Eigen::Isometry3d> result;
+  for (const Eigen::Isometry3d& pose : poses) {
+    const Vector6d step = difference(prior.map_from_body, pose);
+    const double squared_sigmas = step.dot(prior.information * step);
+    if (squared_sigmas < best) {
+      second = std::exchange(best, squared_sigmas);
+      result = pose;
+    } else {
+      second = std::min(second, squared_sigmas);
+    }
+  }
+  if (!(best <= kPossible) || second - best < kClearly) return std::nullopt;
+  return result;
 }
 
 }  // namespace opp::mapping

@@ -58,7 +58,7 @@ class PlaceBuilder {
     cloud.viewpoint = centre.viewpoint;
     SurfelMap surfels(cloud.spacing, params_.registration.normal_gate);
     for (const int id : keyframes_) insertInto(surfels, map_.keyframes[Index(id)]);
-    surfels.visit([&](const Surfel& surfel) {
+    surfels.forEach([&](const Surfel& surfel) {
       cloud.points.push_back(surfel.mean);
       cloud.normals.push_back(surfel.normal);
       cloud.sigmas.push_back(1.0F / std::sqrt(surfel.weight));

@@ -4,10 +4,14 @@
 
 #include "opp/mapping/registration/plane_samples.h"
 
+#include <Eigen/Geometry>
+
+#include <utility>
+
 namespace opp::mapping {
 
 LocalMap::LocalMap(double spacing, const SensorModel& sensor, const RegistrationParams& params)
-    : sensor_(sensor) {
+    : sensor_(sensor), normal_variance_(params.normal_noise * params.normal_noise) {
   double voxel_size = params.surfel_size_ratio * spacing;
   for (int level = 0; level < params.levels; ++level, voxel_size *= params.level_ratio) {
     levels_.emplace_back(voxel_size, params.normal_gate);
@@ -26,6 +30,19 @@ void LocalMap::insert(const ScanFeatures& scan, const Eigen::Isometry3d& map_fro
     const int landmark = label < 0 ? -1 : landmark_of_plane[static_cast<std::size_t>(label)];
     for (SurfelMap& level : levels_) level.insert(point, normal, variance, landmark);
   }
+}
+
+void LocalMap::setLandmarks(std::vector<Plane> planes_in_map) {
+  landmark_planes_ = std::move(planes_in_map);
+  double sum = 0.0, count = 0.0;
+  fine().forEach([&](const Surfel& surfel) {
+    if (surfel.landmark < 0) return;
+    const Eigen::Vector3d& normal =
+        landmark_planes_[static_cast<std::size_t>(surfel.landmark)].normal();
+    sum += 0.5 * surfel.normal.cast<double>().cross(normal).squaredNorm();
+    count += 1.0;
+  });
+  if (count > 0.0) normal_variance_ = sum / count;
 }
 
 }  // namespace opp::mapping

@@ -2,10 +2,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "opp/mapping/registration/match_scan.h"
 
-#include "opp/geometry/point_moments.h"
 #include "opp/mapping/registration/plane_samples.h"
 
-#include "registration/normal_space_sampling.h"
+#include "registration/match_input.h"
+#include "registration/observability.h"
+#include "registration/point_matches.h"
 
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
@@ -20,32 +21,13 @@ namespace {
 /// A surfel averages a patch that need not be flat; until the pose has settled its offset is taken
 /// to be this uncertain, in voxels. Halved at each step down to the noise: graduated non-convexity.
 constexpr double kFirstAnnealing = 0.25;
-/// A point agrees with its surfel if the kernel leaves it this much influence.
-constexpr double kAgreementWeight = 0.1;
-
-struct ScanPoint {
-  Eigen::Vector3f point_in_body;
-  Eigen::Vector3f normal_in_body;
-  float variance;
-  int label;
-  double worth = 1.0;  ///< of one point, given all points of its surface; see effectiveCount
-};
-
-/// The scan's plane as four weighted pseudo-points that stand for all its samples: column k of the
-/// factor of its moments is (s·x, s), and the residual n·(R(s·x) + s·t) + s·d has unit variance.
-struct ScanPlane {
-  Eigen::Matrix4d factor = Eigen::Matrix4d::Zero();
-  PointMoments moments_in_body;
-  double samples = 0.0;  ///< effective count
-  int landmark = -1;
-};
+/// The noise of normals is only known roughly; what may be noise shall not pass for structure.
+constexpr double kNoiseCaution = 2.0;
 
 /// Normal equations of one Gauss–Newton step in (ω, v), with what the step saw.
 struct NormalEquations {
   Matrix6d hessian = Matrix6d::Zero();
   Vector6d gradient = Vector6d::Zero();
-  double squared_distance = 0.0;
-  int agreeing = 0;
 
   void add(const Vector6d& jacobian, double residual, double weight) {
     hessian.noalias() += weight * jacobian * jacobian.transpose();
@@ -57,16 +39,13 @@ class Matcher {
  public:
   Matcher(const ScanFeatures& scan, const LocalMap& map, const PosePrior& prior,
           const RegistrationParams& params)
-      : scan_(scan), map_(map), prior_(prior), params_(params), pose_(prior.map_from_body) {
-    const OrientedCloud& cloud = scan.cloud_in_body;
-    for (const std::uint32_t i :
-         sampleNormalSpace(cloud, static_cast<std::size_t>(params.max_points))) {
-      points_.push_back({cloud.points[i], cloud.normals[i], sampleVariance(cloud, i, map.sensor()),
-                         scan.primitives_in_body.labels[i], 1.0});
-    }
-    weightPoints();
-    collectPlanes();
-  }
+      : map_(map),
+        prior_(prior),
+        params_(params),
+        pose_(prior.map_from_body),
+        points_(scanPoints(scan, map.sensor(), static_cast<std::size_t>(params.max_points))),
+        planes_(scanPlanes(scan, map.sensor())),
+        range_(rmsRange(points_)) {}
 
   MatchResult run() {
     MatchResult result;
@@ -79,27 +58,12 @@ class Matcher {
     associatePlanes();
     weighting_ = Weighting::kByPoint;
     result.converged = iterate(map_.fine(), params_.max_iterations, 0.0);
+    carryByPrior();
     report(result);
     return result;
   }
 
  private:
-  /// Points of one surface share a part of their error; all that are on no plane count as one
-  /// surface.
-  void weightPoints() {
-    std::map<int, double> counts;
-    for (const ScanPoint& p : points_) counts[p.label] += 1.0;
-    for (ScanPoint& p : points_)
-      p.worth = effectiveCount(counts[p.label], map_.sensor()) / counts[p.label];
-  }
-
-  void collectPlanes() {
-    for (const PlaneSamples& samples : planeSamples(scan_, map_.sensor())) {
-      planes_.push_back(
-          {samples.moments_in_body.factor(), samples.moments_in_body, samples.effective_count, -1});
-    }
-  }
-
   /// The finest level on which the points should find their surfels, as far as the prior knows the
   /// pose.
   std::size_t firstLevel() const {
@@ -107,11 +71,8 @@ class Matcher {
         prior_.information.topLeftCorner<3, 3>());
     const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> translation(
         prior_.information.bottomRightCorner<3, 3>());
-    double squared_ranges = 0.0;
-    for (const ScanPoint& p : points_) squared_ranges += p.point_in_body.squaredNorm();
-    squared_ranges /= std::max<double>(1.0, static_cast<double>(points_.size()));
     const double sigma =
-        std::sqrt(squared_ranges / rotation.eigenvalues()[0] + 1.0 / translation.eigenvalues()[0]);
+        std::sqrt(range_ * range_ / rotation.eigenvalues()[0] + 1.0 / translation.eigenvalues()[0]);
     std::size_t level = 0;
     // A query reaches at least half a voxel; two sigmas shall be within it. Negated, so that an
     // unknown pose (NaN or infinite) starts on the coarsest.
@@ -148,25 +109,11 @@ class Matcher {
 
   void addPoints(const SurfelMap& surfels, double extra_variance,
                  NormalEquations& equations) const {
-    const Eigen::Isometry3f pose = pose_.cast<float>();
-    for (const ScanPoint& p : points_) {
-      const Eigen::Vector3f rotated = pose.linear() * p.point_in_body;
-      const Eigen::Vector3f point = rotated + pose.translation();
-      const Surfel* surfel = surfels.closest(point, pose.linear() * p.normal_in_body);
-      if (surfel == nullptr) continue;
-      const Eigen::Vector3d normal = surfel->normal.cast<double>();
-      const double residual = normal.dot((point - surfel->mean).cast<double>());
-      const double variance = p.variance + 1.0 / surfel->weight + extra_variance;
-      const double kernel = cauchy(residual * residual / variance);
-      if (kernel > kAgreementWeight) {
-        ++equations.agreeing;
-        equations.squared_distance += residual * residual;
-      }
-      Vector6d jacobian;
-      jacobian << rotated.cast<double>().cross(normal), normal;
+    forEachMatch(surfels, extra_variance, [&](const ScanPoint& p, const PointMatch& match) {
       const double worth = weighting_ == Weighting::kBySurface ? p.worth : 1.0;
-      equations.add(jacobian, residual, worth * kernel / variance);
-    }
+      equations.add(pointToPlaneJacobian(match.arm, match.normal), match.residual,
+                    worth * match.kernel / match.variance);
+    });
   }
 
   void addPlane(const ScanPlane& plane, double extra_variance, NormalEquations& equations) const {
@@ -176,7 +123,8 @@ class Matcher {
     // Mean variance of a sample, to anneal and to robustify the plane as if it were one point.
     const double variance = plane.samples / plane.moments_in_body.weight();
     const double shrink = variance / (variance + extra_variance);
-    const double weight = shrink * cauchy(shrink * squared_error / plane.samples);
+    const double weight =
+        shrink * cauchy(shrink * squared_error / plane.samples, params_.kernel_width);
     for (int k = 0; k < 4; ++k) {
       const Eigen::Vector3d rotated = pose_.linear() * plane.factor.block<3, 1>(0, k);
       const double scale = plane.factor(3, k);
@@ -188,8 +136,10 @@ class Matcher {
     }
   }
 
-  double cauchy(double squared_sigmas) const {
-    return 1.0 / (1.0 + squared_sigmas / (params_.kernel_width * params_.kernel_width));
+  template <typename F>
+  void forEachMatch(const SurfelMap& surfels, double extra_variance, F&& f) const {
+    forEachPointMatch(points_, pose_, surfels, map_.landmarkPlanes(),
+                      {params_.kernel_width, extra_variance}, f);
   }
 
   Vector6d solve(const NormalEquations& equations) const {
@@ -198,11 +148,15 @@ class Matcher {
     const Matrix6d hessian = equations.hessian + prior_.information;
     const Vector6d gradient =
         equations.gradient - prior_.information * difference(pose_, prior_.map_from_body);
-    // A direction that neither scan nor prior fixes has a zero pivot: LDLT with a tiny ridge leaves
-    // it alone.
-    Matrix6d damped = hessian;
-    damped.diagonal().array() += 1e-9 * std::max(1.0, hessian.diagonal().maxCoeff());
-    return -damped.ldlt().solve(gradient);
+    return -solveDamped(hessian, gradient);
+  }
+
+  /// A direction that neither scan nor prior fixes has a zero pivot: LDLT with a tiny ridge leaves
+  /// it alone.
+  static Vector6d solveDamped(const Matrix6d& matrix, const Vector6d& vector) {
+    Matrix6d damped = matrix;
+    damped.diagonal().array() += 1e-9 * std::max(1.0, matrix.diagonal().maxCoeff());
+    return damped.ldlt().solve(vector);
   }
 
   /// Each scan plane votes for the landmarks of the surfels that its points match.
@@ -236,21 +190,58 @@ class Matcher {
     return squared_sigmas < params_.plane_gate_sigmas * params_.plane_gate_sigmas;
   }
 
-  void report(MatchResult& result) {
+  /// What the points fix, without what the noise of surfels' normals only seems to fix.
+  /// \param worthOf weight of a point, 0: left out
+  template <typename F>
+  Matrix6d observedByPoints(F&& worthOf) const {
+    Matrix6d hessian = Matrix6d::Zero(), noise = Matrix6d::Zero();
+    forEachMatch(map_.fine(), 0.0, [&](const ScanPoint& p, const PointMatch& match) {
+      const double weight = worthOf(p) * match.kernel / match.variance;
+      const Vector6d jacobian = pointToPlaneJacobian(match.arm, match.normal);
+      hessian.noalias() += weight * jacobian * jacobian.transpose();
+      if (match.landmark < 0)
+        noise += weight * map_.normalVariance() * normalNoise(match.arm, match.normal);
+    });
+    return range_ > 0.0 ? withoutNoise(hessian, kNoiseCaution * noise, range_) : hessian;
+  }
+
+  /// Directions in which the scan says little come from the prediction, in proportion.
+  void carryByPrior() {
+    const Matrix6d observed = observedByPoints([](const ScanPoint&) { return 1.0; });
+    const Vector6d to_prior = difference(pose_, prior_.map_from_body);
+    pose_ =
+        retract(pose_, solveDamped(observed + prior_.information, prior_.information * to_prior));
+  }
+
+  void report(MatchResult& result) const {
     result.map_from_body = pose_;
-    result.information = assemble(map_.fine(), 0.0).hessian;
+    NormalEquations of_planes;
     for (std::size_t k = 0; k < planes_.size(); ++k) {
-      if (planes_[k].landmark >= 0)
-        result.planes.push_back({static_cast<int>(k), planes_[k].landmark});
+      if (planes_[k].landmark < 0) continue;
+      addPlane(planes_[k], 0.0, of_planes);
+      result.planes.push_back({static_cast<int>(k), planes_[k].landmark});
     }
-    NormalEquations points;
-    addPoints(map_.fine(), 0.0, points);
-    if (points.agreeing == 0) return;
+    // Planes already stand for their points.
+    result.information = of_planes.hessian + observedByPoints([&](const ScanPoint& p) {
+                           return onLandmark(p) ? 0.0 : p.worth;
+                         });
+    result.covariance = covarianceOf(result.information + prior_.information);
+    double squared_distance = 0.0, agreeing = 0.0;
+    forEachMatch(map_.fine(), 0.0, [&](const ScanPoint&, const PointMatch& match) {
+      if (!match.agrees()) return;
+      agreeing += 1.0;
+      squared_distance += match.residual * match.residual;
+    });
+    if (agreeing == 0.0) return;
     // What the points share of their error does not average out, as in the planes' moments.
-    const double count = points.agreeing;
-    result.point_information = effectiveCount(count, map_.sensor()) / count * points.hessian;
-    result.overlap = count / static_cast<double>(points_.size());
-    result.rms = std::sqrt(points.squared_distance / count);
+    const double worth = effectiveCount(agreeing, map_.sensor()) / agreeing;
+    result.point_information = observedByPoints([&](const ScanPoint&) { return worth; });
+    result.overlap = agreeing / static_cast<double>(points_.size());
+    result.rms = std::sqrt(squared_distance / agreeing);
+  }
+
+  bool onLandmark(const ScanPoint& p) const {
+    return p.label >= 0 && planes_[static_cast<std::size_t>(p.label)].landmark >= 0;
   }
 
   /// Steps that the annealing takes from a quarter of a voxel down to a thousandth of it.
@@ -258,13 +249,13 @@ class Matcher {
 
   enum class Weighting { kBySurface, kByPoint };
 
-  const ScanFeatures& scan_;
   const LocalMap& map_;
   const PosePrior& prior_;
   const RegistrationParams& params_;
   Eigen::Isometry3d pose_;
   std::vector<ScanPoint> points_;
   std::vector<ScanPlane> planes_;
+  double range_;  ///< of the points, root mean square [m]
   Weighting weighting_ = Weighting::kBySurface;
 };
 

@@ -21,6 +21,9 @@ struct FrontendParams {
   double odometry_noise_rotation = degToRad(0.2);
   double min_overlap = 0.3;
   double doubtful_overlap = 0.6;
+  double max_conflict = 0.2;
+  double max_drift_translation = 0.05;
+  double max_drift_rotation = degToRad(3.0);
   double keyframe_overlap = 0.8;
   double keyframe_rotation = degToRad(25.0);
   int local_keyframes = 15;
@@ -45,6 +48,14 @@ struct FrontendParams {
     f(p.doubtful_overlap,
       Field{"doubtful_overlap", "", 0.0, 1.0,
             "if a smaller share agrees, the last pose is tried beside the prediction"});
+    f(p.max_conflict,
+      Field{"max_conflict", "", 0.0, 1.0,
+            "and lost if so much of what speaks stands where scan or map looked through"});
+    f(p.max_drift_translation,
+      Field{"max_drift_translation", "m", 1e-4, 100.0,
+            "a scan whose pose is less certain in any direction (standard deviation) is lost"});
+    f(p.max_drift_rotation,
+      Field{"max_drift_rotation", "rad", 1e-4, 3.1415, "and one that is about any axis"});
     f(p.keyframe_overlap, Field{"keyframe_overlap", "", 0.0, 1.0,
                                 "a scan of which a smaller share agrees becomes a keyframe"});
     f(p.keyframe_rotation, Field{"keyframe_rotation", "rad", 0.01, 3.1415,

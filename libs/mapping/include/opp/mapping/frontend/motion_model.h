@@ -10,35 +10,67 @@
 
 namespace opp::mapping {
 
-/// Predicts the next pose: by the rawlog's odometry where there is one, else by constant velocity,
-/// with an uncertainty that grows with the time since the last known pose.
+/// Predicts the next pose: by the rawlog's odometry where there is one, else by constant velocity.
+///
+/// A Kalman filter of pose and velocity in (ω, v), see `retract`: a direction that scans do not fix
+/// grows uncertain from prediction to prediction, until one fixes it again. Velocities change by
+/// random accelerations (white, of the spectral density a²·0.1 s that a body has which changes an
+/// acceleration of deviation a every 0.1 s).
 class MotionModel {
  public:
   explicit MotionModel(const FrontendParams& params) : params_(params) {}
 
-  /// Takes note of the pose of a localized scan. `odom_from_body`: the odometry's pose at that
-  /// time.
-  void update(const StampedPose& pose, const std::optional<Eigen::Isometry3d>& odom_from_body);
+  /// The body is at `pose`, exactly, with no known velocity; what was before is forgotten.
+  void start(const StampedPose& pose, const std::optional<Eigen::Isometry3d>& odom_from_body);
 
-  /// Where the body should be at `timestamp`. Before the first update: the identity, nothing known.
+  /// Takes note of the pose of a localized scan. `odom_from_body`: the odometry's pose at that
+  /// time. `information`: what the scan says of the pose; a direction without is known as well as
+  /// it was predicted.
+  void update(const StampedPose& pose, const std::optional<Eigen::Isometry3d>& odom_from_body,
+              const Matrix6d& information);
+
+  /// Where the body should be at `timestamp`. Before the start: the identity, nothing known.
   PosePrior predict(double timestamp, const std::optional<Eigen::Isometry3d>& odom_from_body) const;
 
   /// The last known pose, as uncertain as the typical speeds allow at `timestamp`: for a body that
   /// did something unexpected.
   PosePrior lastPose(double timestamp) const;
 
-  /// The map has moved by an optimization: past poses are re-expressed so that the last one is
-  /// `last_pose`.
+  /// What motion alone tells of the pose at `timestamp` relative to the one of the last call of
+  /// `setAnchor`: errors of odometry, or of velocity, over the way between.
+  Matrix6d informationSinceAnchor(double timestamp,
+                                  const std::optional<Eigen::Isometry3d>& odom_from_body) const;
+  /// Remembers the last known pose, which became a keyframe.
+  void setAnchor();
+
+  /// The map has moved by an optimization and took the last pose to `last_pose`.
   void correct(const Eigen::Isometry3d& last_pose);
 
  private:
-  PosePrior predictFromOdometry(const Eigen::Isometry3d& last_from_now) const;
-  PosePrior predictFromVelocity(double timestamp) const;
+  using Matrix12d = Eigen::Matrix<double, 12, 12>;
+  struct State {
+    Eigen::Isometry3d map_from_body = Eigen::Isometry3d::Identity();
+    Vector6d rate = Vector6d::Zero();          ///< [rad/s, m/s]
+    Matrix12d covariance = Matrix12d::Zero();  ///< of (ω, v, rate)
+  };
+  struct Anchor {
+    double timestamp = 0.0;
+    std::optional<Eigen::Isometry3d> odom_from_body;
+  };
+
+  State stateAt(double timestamp, const std::optional<Eigen::Isometry3d>& odom_from_body) const;
+  State carriedByOdometry(double step, const Eigen::Isometry3d& last_from_now) const;
+  State carriedByVelocity(double step) const;
+  Vector6d odometryVariance(const Eigen::Isometry3d& first_from_second) const;
+  /// Spectral density of the accelerations [rad²/s³, m²/s³].
+  Vector6d agility() const;
 
   FrontendParams params_;
-  std::optional<StampedPose> last_;
-  std::optional<StampedPose> before_last_;
+  bool started_ = false;
+  double timestamp_ = 0.0;
+  State last_;
   std::optional<Eigen::Isometry3d> last_odom_from_body_;
+  Anchor anchor_;
 };
 
 }  // namespace opp::mapping

@@ -20,6 +20,8 @@ enum class TrackOutcome {
   kEmptyScan,      ///< no samples
   kNoMap,          ///< nothing to be localized in: `Tracker::start` and `setLocalMap` come first
   kLittleOverlap,  ///< too small a share of the scan agrees with the map
+  kContradicted,   ///< what agrees is outweighed by what stands where the other looked through
+  kUnobserved,     ///< a direction has not been seen for so long that no prediction can be trusted
 };
 
 /// One line for reports.
@@ -55,18 +57,32 @@ class Tracker {
   /// or landmarks changed.
   void setLocalMap(LocalMap local_map) { local_map_ = std::move(local_map); }
 
-  /// The map moved and took the last localized pose to `last_pose`.
-  void correct(const Eigen::Isometry3d& last_pose) { motion_.correct(last_pose); }
+  /// The last localized scan became the newest keyframe, and optimization took it to `last_pose`.
+  void correct(const Eigen::Isometry3d& last_pose) {
+    motion_.correct(last_pose);
+    motion_.setAnchor();
+  }
 
  private:
-  MatchResult localize(const ScanFeatures& scan, const PosePrior& predicted,
+  TrackResult localize(const ScanFeatures& scan, const PosePrior& predicted,
                        const Keyframe& newest) const;
-  MatchResult relocalize(const ScanFeatures& scan, const Keyframe& newest) const;
+  std::optional<PosePrior> relocalize(const ScanFeatures& scan, const PosePrior& last,
+                                      const Keyframe& newest) const;
+  bool convincing(const MatchResult& match) const;
+  TrackOutcome outcomeOf(const MatchResult& match, const ScanFeatures& scan,
+                         const Keyframe& newest) const;
+  bool contradicts(const Eigen::Isometry3d& map_from_body, const ScanFeatures& scan,
+                   const Keyframe& newest) const;
   bool wantsKeyframe(const MatchResult& match, const Keyframe& newest) const;
 
   MapperParams params_;
   MotionModel motion_;
   std::optional<LocalMap> local_map_;
 };
+
+/// Of several poses that explain a scan alike, the one that motion speaks for by odds of 100 to 1
+/// against each other one; nothing if none is, if motion denies it, or if there are no poses.
+std::optional<Eigen::Isometry3d> likeliest(const std::vector<Eigen::Isometry3d>& poses,
+                                           const PosePrior& prior);
 
 }  // namespace opp::mapping

@@ -22,10 +22,8 @@ class LocalMap {
   /// Adds the samples of a scan. `landmark_of_plane[p]` is the landmark of scan plane p (−1: none).
   void insert(const ScanFeatures& scan, const Eigen::Isometry3d& map_from_body,
               const std::vector<int>& landmark_of_plane);
-  /// Replaces the landmarks' planes; index = landmark id.
-  void setLandmarks(std::vector<Plane> planes_in_map) {
-    landmark_planes_ = std::move(planes_in_map);
-  }
+  /// Replaces the landmarks' planes; index = landmark id. All that were inserted need one.
+  void setLandmarks(std::vector<Plane> planes_in_map);
 
   /// Noise of the scans.
   const SensorModel& sensor() const { return sensor_; }
@@ -33,11 +31,15 @@ class LocalMap {
   /// Fine to coarse, at least one.
   const std::vector<SurfelMap>& levels() const { return levels_; }
   const std::vector<Plane>& landmarkPlanes() const { return landmark_planes_; }
+  /// Variance of the fine surfels' normals about either tangent [rad²], from how those on landmarks
+  /// scatter; without landmarks what RegistrationParams assume.
+  double normalVariance() const { return normal_variance_; }
 
  private:
   SensorModel sensor_;
   std::vector<SurfelMap> levels_;
   std::vector<Plane> landmark_planes_;
+  double normal_variance_;
 };
 
 }  // namespace opp::mapping

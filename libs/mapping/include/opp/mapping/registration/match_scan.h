@@ -30,8 +30,11 @@ struct MatchResult {
   Eigen::Isometry3d map_from_body = Eigen::Isometry3d::Identity();
   Matrix6d information =
       Matrix6d::Zero();  ///< of (ω, v) from scan and map alone, without the prior
-  Matrix6d point_information =
-      Matrix6d::Zero();                  ///< what the points alone fix, counted as independent
+  Matrix6d covariance = Matrix6d::Zero();  ///< of (ω, v) from scan, map and prior; at most about
+                                           ///< 1e4 where nothing is known
+  /// What the points alone fix; of a tracked scan (`Tracker`), with what motion since the newest
+  /// keyframe adds.
+  Matrix6d point_information = Matrix6d::Zero();
   std::vector<PlaneAssociation> planes;  ///< in order of scan planes
   double overlap = 0.0;  ///< share of the scan's points that agree with the map, 0–1
   double rms = 0.0;      ///< distance of the agreeing points to their surfels [m]

@@ -18,6 +18,7 @@ struct RegistrationParams {
   double level_ratio = 4.0;
   int levels = 3;
   double normal_gate = degToRad(35.0);
+  double normal_noise = degToRad(3.0);
   double kernel_width = 2.5;
   int max_iterations = 30;
   double rotation_tolerance = 2e-5;
@@ -37,6 +38,9 @@ struct RegistrationParams {
                       "levels of voxels; the less is known of a pose, the coarser the first"});
     f(p.normal_gate, Field{"normal_gate", "rad", 0.01, 1.57,
                            "point and surfel match if their normals differ less"});
+    f(p.normal_noise,
+      Field{"normal_noise", "rad", 1e-4, 0.5,
+            "normals of surfels scatter so much, until plane landmarks show how much"});
     f(p.kernel_width, Field{"kernel_width", "", 0.1, 100.0,
                             "Cauchy kernel: residual in sigmas at which influence peaks"});
     f(p.max_iterations,
@@ -48,8 +52,9 @@ struct RegistrationParams {
     f(p.plane_vote_share,
       Field{"plane_vote_share", "", 0.0, 1.0,
             "a scan's plane is a landmark if this share of its matched samples lie on it"});
-    f(p.plane_gate_sigmas, Field{"plane_gate_sigmas", "", 0.5, 100.0,
-                                 "and if their distance (rms) is below so many sigmas of a sample"});
+    f(p.plane_gate_sigmas,
+      Field{"plane_gate_sigmas", "", 0.5, 100.0,
+            "and if their distance (rms) is below so many sigmas of a sample"});
   }
 };
 

@@ -35,9 +35,9 @@ class SurfelMap {
   /// none. Constant time.
   const Surfel* closest(const Eigen::Vector3f& point, const Eigen::Vector3f& normal) const;
 
-  /// Calls f(surfel) for each surfel, in the order in which they were made.
+  /// Calls f(surfel) for each, in the order of their first samples.
   template <typename F>
-  void visit(const F& f) const {
+  void forEach(F&& f) const {
     for (const Entry& entry : surfels_) f(entry.surfel);
   }
 

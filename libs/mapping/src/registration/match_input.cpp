@@ -1,0 +1,45 @@
+// SPDX-FileCopyrightText: 2026 The opp-mapping authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "registration/match_input.h"
+
+#include "opp/mapping/registration/plane_samples.h"
+
+#include "registration/normal_space_sampling.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+namespace opp::mapping {
+
+std::vector<ScanPoint> scanPoints(const ScanFeatures& scan, const SensorModel& sensor,
+                                  std::size_t max_points) {
+  const OrientedCloud& cloud = scan.cloud_in_body;
+  std::vector<ScanPoint> points;
+  std::map<int, double> counts;
+  for (const std::uint32_t i : sampleNormalSpace(cloud, max_points)) {
+    const int label = scan.primitives_in_body.labels[i];
+    points.push_back(
+        {cloud.points[i], cloud.normals[i], sampleVariance(cloud, i, sensor), label, 1.0});
+    counts[label] += 1.0;
+  }
+  for (ScanPoint& p : points) p.worth = effectiveCount(counts[p.label], sensor) / counts[p.label];
+  return points;
+}
+
+double rmsRange(const std::vector<ScanPoint>& points) {
+  double sum = 0.0;
+  for (const ScanPoint& p : points) sum += p.point_in_body.squaredNorm();
+  return std::sqrt(sum / std::max<double>(1.0, static_cast<double>(points.size())));
+}
+
+std::vector<ScanPlane> scanPlanes(const ScanFeatures& scan, const SensorModel& sensor) {
+  std::vector<ScanPlane> planes;
+  for (const PlaneSamples& samples : planeSamples(scan, sensor)) {
+    planes.push_back(
+        {samples.moments_in_body.factor(), samples.moments_in_body, samples.effective_count, -1});
+  }
+  return planes;
+}
+
+}  // namespace opp::mapping

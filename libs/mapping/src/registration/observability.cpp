@@ -1,0 +1,39 @@
+// SPDX-FileCopyrightText: 2026 The opp-mapping authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "registration/observability.h"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <Eigen/Geometry>
+
+namespace opp::mapping {
+
+Matrix6d normalNoise(const Eigen::Vector3d& arm, const Eigen::Vector3d& normal) {
+  // J = A·n with A = ([arm]×; I), so Cov(J) = A·Cov(n)·Aᵀ and Cov(n) = σ²(I − n·nᵀ).
+  Eigen::Matrix<double, 6, 3> a;
+  a << 0.0, -arm.z(), arm.y(),  //
+      arm.z(), 0.0, -arm.x(),   //
+      -arm.y(), arm.x(), 0.0,   //
+      1.0, 0.0, 0.0,            //
+      0.0, 1.0, 0.0,            //
+      0.0, 0.0, 1.0;
+  const Vector6d jacobian = a * normal;
+  return a * a.transpose() - jacobian * jacobian.transpose();
+}
+
+Matrix6d withoutNoise(const Matrix6d& hessian, const Matrix6d& noise, double range) {
+  Vector6d units;
+  units << Eigen::Vector3d::Constant(1.0 / range), Eigen::Vector3d::Ones();
+  const Matrix6d scaled = units.asDiagonal() * (hessian - noise) * units.asDiagonal();
+  const Eigen::SelfAdjointEigenSolver<Matrix6d> eigen(scaled);
+  const Matrix6d positive = eigen.eigenvectors() * eigen.eigenvalues().cwiseMax(0.0).asDiagonal() *
+                            eigen.eigenvectors().transpose();
+  return units.cwiseInverse().asDiagonal() * positive * units.cwiseInverse().asDiagonal();
+}
+
+Matrix6d covarianceOf(const Matrix6d& information) {
+  constexpr double kLeast = 1e-4;
+  return (information + kLeast * Matrix6d::Identity()).ldlt().solve(Matrix6d::Identity());
+}
+
+}  // namespace opp::mapping
