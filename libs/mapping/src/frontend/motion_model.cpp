@@ -130,10 +130,10 @@ PosePrior MotionModel::lastPose(double timestamp) const {
   const double step = std::max(timestamp - timestamp_, kMinTimeStep);
   PosePrior prior;
   prior.map_from_body = last_.map_from_body;
-  prior.information = (perKind(params_.angular_speed, params_.speed) * step)
-                          .cwiseAbs2()
-                          .cwiseInverse()
-                          .asDiagonal();
+  // What was open at the last pose is no better known now.
+  Matrix6d covariance = last_.covariance.topLeftCorner<6, 6>();
+  covariance.diagonal() += (perKind(params_.angular_speed, params_.speed) * step).cwiseAbs2();
+  prior.information = inverse(covariance);
   return prior;
 }
 

@@ -75,10 +75,11 @@ TrackResult Tracker::localize(const ScanFeatures& scan, const PosePrior& predict
     best.outcome = outcome;
     best.match = std::move(match);
   };
+  // Repeating rooms: what is likely and not contradicted goes before what agrees a little more.
   better(predicted);
-  if (convincing(best.match)) return best;
+  if (best.localized()) return best;
   better(last);
-  if (convincing(best.match)) return best;
+  if (best.localized()) return best;
   if (const auto start = relocalize(scan, last, newest)) better(*start);
   return best;
 }

@@ -32,8 +32,8 @@ class MotionModel {
   /// Where the body should be at `timestamp`. Before the start: the identity, nothing known.
   PosePrior predict(double timestamp, const std::optional<Eigen::Isometry3d>& odom_from_body) const;
 
-  /// The last known pose, as uncertain as the typical speeds allow at `timestamp`: for a body that
-  /// did something unexpected.
+  /// The last known pose, as uncertain as it was and as the typical speeds allow at `timestamp`:
+  /// for a body that did something unexpected.
   PosePrior lastPose(double timestamp) const;
 
   /// What motion alone tells of the pose at `timestamp` relative to the one of the last call of
