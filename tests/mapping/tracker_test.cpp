@@ -214,6 +214,21 @@ TEST(Tracker, WhatStandsWhereTheMapWasLookedThroughSpeaksAgainstAPose) {
   }
 }
 
+TEST(Tracker, DoesNotBelieveAJumpThatOdometryDenies) {
+  for (std::uint64_t room = 0; room < 5; ++room) {
+    const Eigen::Isometry3d start = poseAt(0.0, 0.0), moved = poseAt(0.1, 0.4);
+    ScanFeatures scan = scanOf(room, 5, moved);  // half a second later
+    const TrackResult free =
+        startAt(room, start).tracker.track(scan, std::nullopt, startAt(room, start).map);
+    EXPECT_TRUE(free.localized()) << "room " << room << ": " << describe(free.outcome);
+    Started driven = startAt(room, start);
+    driven.tracker.start({0.0, start}, start);
+    const TrackResult denied = driven.tracker.track(scan, poseAt(0.0, 0.01), driven.map);
+    EXPECT_EQ(denied.outcome, TrackOutcome::kImplausible) << "room " << room;
+    EXPECT_TRUE(driven.tracker.track(scan, poseAt(0.1, 0.39), driven.map).localized());
+  }
+}
+
 TEST(Likeliest, IsThePoseThatMotionClearlySpeaksFor) {
   PosePrior prior;
   prior.information = Matrix6d::Identity();

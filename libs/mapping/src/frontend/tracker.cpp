@@ -27,6 +27,8 @@ std::string_view describe(TrackOutcome outcome) {
       return "too little of the scan agrees with the map";
     case TrackOutcome::kContradicted:
       return "scan and map each show something where the other looked through";
+    case TrackOutcome::kImplausible:
+      return "the body cannot have moved so far since the last scan";
     case TrackOutcome::kUnobserved:
       return "the scan leaves a direction open that was not seen for too long";
   }
@@ -49,7 +51,10 @@ TrackResult Tracker::track(const ScanFeatures& scan,
   if (scan.cloud_in_body.size() == 0) return result;
 
   const Keyframe& newest = map.keyframes.back();
-  result = localize(scan, motion_.predict(scan.timestamp, odom_from_body), newest);
+  const PosePrior predicted = motion_.predict(scan.timestamp, odom_from_body);
+  // Odometry measures the motion; without it only how fast bodies move is known for sure.
+  const PosePrior moved = odom_from_body ? predicted : motion_.lastPose(scan.timestamp);
+  result = localize(scan, predicted, moved, newest);
   if (!result.localized()) return result;
   // Between keyframes, motion ties what neither planes nor points do.
   result.match.point_information += motion_.informationSinceAnchor(scan.timestamp, odom_from_body);
@@ -62,12 +67,12 @@ TrackResult Tracker::track(const ScanFeatures& scan,
 /// The ladder of DESIGN 3: prediction, then the last pose with no more known than how fast a body
 /// moves, then no guess.
 TrackResult Tracker::localize(const ScanFeatures& scan, const PosePrior& predicted,
-                              const Keyframe& newest) const {
+                              const PosePrior& moved, const Keyframe& newest) const {
   TrackResult best;
   const PosePrior last = motion_.lastPose(scan.timestamp);
   const auto better = [&](const PosePrior& prior) {
     MatchResult match = matchScan(scan, *local_map_, prior, params_.registration);
-    const TrackOutcome outcome = outcomeOf(match, scan, newest);
+    const TrackOutcome outcome = outcomeOf(match, scan, moved, newest);
     const bool localized = outcome == TrackOutcome::kLocalized;
     if (best.outcome != TrackOutcome::kNoMap && best.localized() >= localized &&
         (best.localized() != localized || best.match.overlap >= match.overlap))
@@ -89,8 +94,11 @@ bool Tracker::convincing(const MatchResult& match) const {
 }
 
 TrackOutcome Tracker::outcomeOf(const MatchResult& match, const ScanFeatures& scan,
-                                const Keyframe& newest) const {
+                                const PosePrior& moved, const Keyframe& newest) const {
   if (match.overlap < params_.frontend.min_overlap) return TrackOutcome::kLittleOverlap;
+  const Vector6d step = difference(moved.map_from_body, match.map_from_body);
+  const double max_jump = params_.frontend.max_jump;
+  if (step.dot(moved.information * step) > max_jump * max_jump) return TrackOutcome::kImplausible;
   // A wrong pose can agree with a good part of a map: the floor fits at many places.
   if (!convincing(match) && contradicts(match.map_from_body, scan, newest))
     return TrackOutcome::kContradicted;

@@ -21,6 +21,7 @@ enum class TrackOutcome {
   kNoMap,          ///< nothing to be localized in: `Tracker::start` and `setLocalMap` come first
   kLittleOverlap,  ///< too small a share of the scan agrees with the map
   kContradicted,   ///< what agrees is outweighed by what stands where the other looked through
+  kImplausible,    ///< the body cannot have moved so since the last scan
   kUnobserved,     ///< a direction has not been seen for so long that no prediction can be trusted
 };
 
@@ -64,12 +65,13 @@ class Tracker {
   }
 
  private:
-  TrackResult localize(const ScanFeatures& scan, const PosePrior& predicted,
+  /// \param moved the most that is known of the motion since the last localized scan
+  TrackResult localize(const ScanFeatures& scan, const PosePrior& predicted, const PosePrior& moved,
                        const Keyframe& newest) const;
   std::optional<PosePrior> relocalize(const ScanFeatures& scan, const PosePrior& last,
                                       const Keyframe& newest) const;
   bool convincing(const MatchResult& match) const;
-  TrackOutcome outcomeOf(const MatchResult& match, const ScanFeatures& scan,
+  TrackOutcome outcomeOf(const MatchResult& match, const ScanFeatures& scan, const PosePrior& moved,
                          const Keyframe& newest) const;
   bool contradicts(const Eigen::Isometry3d& map_from_body, const ScanFeatures& scan,
                    const Keyframe& newest) const;
