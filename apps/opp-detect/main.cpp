@@ -11,8 +11,8 @@
 #include "opp/primitives/label_points.h"
 
 #include "common/flags.h"
+#include "common/read_input.h"
 #include "common/run_main.h"
-#include "opp-detect/read_input.h"
 
 #include <chrono>
 #include <filesystem>

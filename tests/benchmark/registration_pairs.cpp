@@ -5,14 +5,13 @@
 // Beside it, what dense ICP makes of the pair when it is started at the true pose: what the
 // sensor's distortion and the truth's own error leave for anyone. With --other: pairs of scans of
 // two places that have nothing in common; each pose that is accepted is wrong.
-#include "opp/mapping/evaluation/time_association.h"
-#include "opp/mapping/io/tum_trajectory.h"
 #include "opp/mapping/pipeline/feature_stream.h"
 #include "opp/mapping/registration/align_globally.h"
 #include "opp/mapping/registration/corner_icp.h"
 
 #include "common/flags.h"
 #include "common/run_main.h"
+#include "posed_frames.h"
 #include "registration/voxel_index.h"
 
 #include <Eigen/Cholesky>
@@ -43,10 +42,7 @@ struct Params {
   }
 };
 
-struct Frame {
-  ScanFeatures features;
-  Eigen::Isometry3d map_from_body = Eigen::Isometry3d::Identity();
-};
+using Frame = PosedFrame;
 
 struct PairResult {
   std::size_t target = 0, source = 0;
@@ -66,21 +62,6 @@ struct PairResult {
   }
   bool wrong() const { return accepted() && (angle > degToRad(5.0) || distance > 0.10); }
 };
-
-std::vector<Frame> readFrames(const std::string& rawlog, const std::string& poses,
-                              std::size_t every, const Params& params) {
-  const Trajectory truth = readTumTrajectory(std::filesystem::path(poses));
-  RawlogOptions options;
-  options.every = every;
-  RawlogReader reader(rawlog, options);
-  FeatureStream stream(reader, params.primitives, 0);
-  std::vector<Frame> frames;
-  while (auto frame = stream.next()) {
-    const auto pose = poseAt(truth, frame->features.timestamp, params.association);
-    if (pose) frames.push_back({std::move(frame->features), *pose});
-  }
-  return frames;
-}
 
 /// Share of the smaller scan's samples that have one of the other scan in reach that faces the same
 /// way, and whether planes with three independent normals are among what they share.
@@ -268,8 +249,9 @@ void run(apps::CommandLine& line) {
   line.parse();
   Params params;
   parameters.applyTo(params);
-  const auto frames = readFrames(rawlog.getValue(), gt.getValue(),
-                                 static_cast<std::size_t>(every.getValue()), params);
+  const auto frames =
+      readPosedFrames(rawlog.getValue(), gt.getValue(), static_cast<std::size_t>(every.getValue()),
+                      params.primitives, params.association);
   if (other.isSet()) {
     printStrangers(frames, other.getValue(), static_cast<std::size_t>(every.getValue()), params);
     return;

@@ -68,6 +68,10 @@ float DepthMap::range(const Eigen::Vector3f& point) const {
   return ranges_[indexOf(at.face, clampBin(at.u), clampBin(at.v))];
 }
 
+float DepthMap::margin(float range) const {
+  return kBlurSpacings * static_cast<float>(spacing_) + kBlurRatio * range;
+}
+
 FreeSpace::FreeSpace(const std::vector<ScanView>& views) {
   for (const ScanView& view : views) {
     views_.push_back({view.features_from_view.inverse().cast<float>(), DepthMap(*view.cloud)});
@@ -78,9 +82,7 @@ bool FreeSpace::contains(const Eigen::Vector3f& point, float slack) const {
   return std::any_of(views_.begin(), views_.end(), [&](const View& view) {
     const Eigen::Vector3f in_view = view.view_from_features * point;
     const float surface = view.depth.range(in_view);
-    const float margin =
-        kBlurSpacings * static_cast<float>(view.depth.spacing()) + slack + kBlurRatio * surface;
-    return (in_view - view.depth.viewpoint()).norm() < surface - margin;
+    return (in_view - view.depth.viewpoint()).norm() < surface - view.depth.margin(surface) - slack;
   });
 }
 

@@ -21,8 +21,10 @@ class DepthMap {
   /// seen. Constant time.
   float range(const Eigen::Vector3f& point) const;
 
+  /// How much nearer than `range` a place has to be that the view surely looked through [m].
+  float margin(float range) const;
+
   const Eigen::Vector3f& viewpoint() const { return viewpoint_; }
-  double spacing() const { return spacing_; }
 
  private:
   void cover(const Eigen::Vector3f& ray, float angular_radius);

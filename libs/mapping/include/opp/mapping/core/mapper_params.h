@@ -7,6 +7,7 @@
 #include "opp/mapping/frontend/frontend_params.h"
 #include "opp/mapping/loop/loop_params.h"
 #include "opp/mapping/planar/planar_params.h"
+#include "opp/mapping/registration/corner_icp_params.h"
 #include "opp/mapping/registration/global_alignment_params.h"
 #include "opp/mapping/registration/registration_params.h"
 #include "opp/params/primitive_params.h"
@@ -20,6 +21,7 @@ struct MapperParams {
   PrimitiveParams primitives;
   RegistrationParams registration;
   GlobalAlignmentParams global_alignment;
+  CornerIcpParams corner_icp;
   FrontendParams frontend;
   BackendParams backend;
   LoopParams loop;
@@ -32,6 +34,7 @@ struct MapperParams {
     PrimitiveParams::visitSections(p.primitives, f);
     f(p.registration);
     f(p.global_alignment);
+    f(p.corner_icp);
     f(p.frontend);
     f(p.backend);
     f(p.loop);

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The opp-mapping authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "opp-detect/read_input.h"
+#include "common/read_input.h"
 
 #include "opp/mapping/io/cloud_file.h"
 #include "opp/mapping/io/rawlog_reader.h"
