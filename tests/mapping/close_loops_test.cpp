@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "opp/mapping/loop/close_loops.h"
 
+#include "opp/geometry/constants.h"
 #include "opp/mapping/core/se3.h"
 #include "opp/mapping/frontend/insert_keyframe.h"
 
@@ -84,6 +85,37 @@ TEST(LoopCloser, BelievesNothingBeyondTheDrift) {
     // A way of a few millimetres of drift cannot have led so far off.
     openLoop(room, drift, 0.03, 4, closer, closed);
     EXPECT_FALSE(closed) << "room " << room;
+  }
+}
+
+TEST(LoopCloser, IsNotTurnedAroundBySymmetry) {
+  // A bare room looks the same turned around, with its middle where it was.
+  Vector6d turned;
+  turned << 0.0, 0.0, kPi, 0.0, 0.0, 0.0;
+  MapState map;
+  LoopCloser closer{MapperParams()};
+  bool closed = false;
+  for (int k = 0; k < 5; ++k) {
+    const Eigen::Isometry3d truth = poseAt(k);
+    test::SyntheticOptions options;
+    options.spacing = 0.08;
+    options.seed = static_cast<std::uint64_t>(k);
+    MatchResult match;
+    match.map_from_body = k < 2 ? truth : retract(Eigen::Isometry3d::Identity(), turned) * truth;
+    match.point_information = 1e4 * Matrix6d::Identity();
+    const auto room = test::roomSides({-2.0, -1.5, 0.0}, {2.0, 1.5, 2.5});
+    const int id = insertKeyframe(
+        test::trueFeatures(test::sampleScene(room, truth.translation(), truth.inverse(), options)),
+        match, SensorModel(), map);
+    if (id > 0) map.links.push_back({id - 1, id, id == 2 ? 0.04 : 1e-6});
+    closed = closed || closer.close(map);
+  }
+  // The later keyframes are where the map has them, or half a turn off: the drift does not tell,
+  // and a turn of half a circle is no drift.
+  for (int k = 2; k < 5; ++k) {
+    const Keyframe& keyframe = map.keyframes[static_cast<std::size_t>(k)];
+    const Eigen::Isometry3d before = retract(Eigen::Isometry3d::Identity(), turned) * poseAt(k);
+    EXPECT_LT(rotationAngle(before.inverse() * keyframe.map_from_body), 0.05) << "keyframe " << k;
   }
 }
 

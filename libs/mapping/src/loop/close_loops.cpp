@@ -48,12 +48,16 @@ std::vector<int> candidates(const MapState& map, int keyframe, const std::vector
   return chosen;
 }
 
+/// Drift of the position goes with turns at the distance of what is seen [m].
+double leverOf(const Keyframe& keyframe) {
+  return std::max(keyframe.view_centre_in_body.norm(), 1.0);
+}
+
 /// The keyframe's present pose, as uncertain as drift makes it relative to the candidate.
 PosePrior driftedPose(const Keyframe& keyframe, double variance) {
   PosePrior prior;
   prior.map_from_body = keyframe.map_from_body;
-  // Drift of the position goes with turns at the distance of what is seen.
-  const double lever = std::max(keyframe.view_centre_in_body.norm(), 0.1);
+  const double lever = leverOf(keyframe);
   Vector6d information;
   information << Eigen::Vector3d::Constant(lever * lever / variance),
       Eigen::Vector3d::Constant(1.0 / variance);
@@ -74,12 +78,14 @@ PlaceClaim claimOf(const MapState& map, int keyframe, const PlaceMatch& match) {
   return claim;
 }
 
-/// How far the present poses are from a claim, at the place of the claim [m].
+/// How far the present poses are from a claim [m]: of what keyframe b sees, and by the turn of its
+/// view. A lidar in the middle of a symmetric hall sees the same centre when turned around.
 double disagreement(const MapState& map, const PlaceClaim& claim) {
   const Keyframe& b = map.keyframes[Index(claim.keyframe_b)];
   const Eigen::Isometry3d claimed =
       map.keyframes[Index(claim.keyframe_a)].map_from_body * claim.keyframe_a_from_b;
-  return (claimed * b.view_centre_in_body - b.viewCentre()).norm();
+  const double apart = (claimed * b.view_centre_in_body - b.viewCentre()).norm();
+  return std::max(apart, leverOf(b) * rotationAngle(claimed.inverse() * b.map_from_body));
 }
 
 }  // namespace
