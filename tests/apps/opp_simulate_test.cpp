@@ -159,7 +159,8 @@ TEST(OppSimulate, TheRecipeOfTheDemoMakesTheDemo) {
   const TempFolder folder;
   ASSERT_EQ(runApp("opp-simulate",
                    {"--scene", "room", "--frames", "60", "--sensor", "kinect", "--seed", "1",
-                    "--decimation", "2", "--gzip-level", "9", "--quiet", "-o", "demo.rawlog"},
+                    "--odometry", "--planar", "--sensor-pose", "0.1 0 0.9 0 10 0", "--decimation",
+                    "2", "--gzip-level", "9", "--quiet", "-o", "demo.rawlog"},
                    folder.path())
                 .exit_code,
             0);

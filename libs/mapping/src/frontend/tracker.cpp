@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "opp/mapping/frontend/tracker.h"
 
+#include "opp/geometry/constants.h"
 #include "opp/mapping/registration/align_globally.h"
 
 #include "registration/scan_model.h"
@@ -42,6 +43,21 @@ void Tracker::start(const StampedPose& pose,
   motion_.start(pose, odom_from_body);
 }
 
+namespace {
+
+/// Twice the logarithm of the odds of 100 to 1.
+constexpr double kClearly = 9.2;
+
+/// Whether motion speaks against a body that has turned around, by odds of 100 to 1. One scan
+/// cannot tell a rectangular hall from the same hall turned around.
+bool excludesHalfTurn(const PosePrior& prior) {
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> rotation(
+      prior.information.topLeftCorner<3, 3>(), Eigen::EigenvaluesOnly);
+  return kPi * kPi * rotation.eigenvalues()[0] >= kClearly;
+}
+
+}  // namespace
+
 TrackResult Tracker::track(const ScanFeatures& scan,
                            const std::optional<Eigen::Isometry3d>& odom_from_body,
                            const MapState& map) {
@@ -52,8 +68,8 @@ TrackResult Tracker::track(const ScanFeatures& scan,
 
   const Keyframe& newest = map.keyframes.back();
   const PosePrior predicted = motion_.predict(scan.timestamp, odom_from_body);
-  // Odometry measures the motion; without it only how fast bodies move is known for sure.
-  const PosePrior moved = odom_from_body ? predicted : motion_.lastPose(scan.timestamp);
+  // Not by odometry: wheels slip, and that of a hand-held body may be a plane's.
+  const PosePrior moved = motion_.lastPose(scan.timestamp);
   result = localize(scan, predicted, moved, newest);
   if (!result.localized()) return result;
   // Between keyframes, motion ties what neither planes nor points do.
@@ -72,7 +88,10 @@ TrackResult Tracker::localize(const ScanFeatures& scan, const PosePrior& predict
   const PosePrior last = motion_.lastPose(scan.timestamp);
   const auto better = [&](const PosePrior& prior) {
     MatchResult match = matchScan(scan, *local_map_, prior, params_.registration);
-    const TrackOutcome outcome = outcomeOf(match, scan, moved, newest);
+    TrackOutcome outcome = outcomeOf(match, scan, moved, newest);
+    // What motion does not predict must explain most of the scan: a wrong pose far off can agree
+    // with a good part of a map, and with no direction left open.
+    if (&prior != &predicted && !convincing(match)) outcome = TrackOutcome::kLittleOverlap;
     const bool localized = outcome == TrackOutcome::kLocalized;
     if (best.outcome != TrackOutcome::kNoMap && best.localized() >= localized &&
         (best.localized() != localized || best.match.overlap >= match.overlap))
@@ -129,7 +148,7 @@ std::optional<PosePrior> Tracker::relocalize(const ScanFeatures& scan, const Pos
   const GlobalAlignment alignment =
       alignGlobally(newest.features, scan, params_.primitives.sensor, params_.global_alignment);
   std::optional<Eigen::Isometry3d> pose;
-  if (alignment.outcome == AlignmentOutcome::kAligned) {
+  if (alignment.outcome == AlignmentOutcome::kAligned && excludesHalfTurn(last)) {
     pose = newest.map_from_body * alignment.target_from_source;
   } else if (alignment.outcome == AlignmentOutcome::kAmbiguous ||
              alignment.outcome == AlignmentOutcome::kUnconfirmed) {
@@ -152,9 +171,8 @@ bool Tracker::wantsKeyframe(const MatchResult& match, const Keyframe& newest) co
 
 std::optional<Eigen::Isometry3d> likeliest(const std::vector<Eigen::Isometry3d>& poses,
                                            const PosePrior& prior) {
-  // Twice the logarithm of the odds of 100 to 1, and the 99.9 % point of χ² with six degrees of
-  // freedom.
-  constexpr double kClearly = 9.2, kPossible = 22.5;
+  // The 99.9 % point of χ² with six degrees of freedom.
+  constexpr double kPossible = 22.5;
   double best = std::numeric_limits<double>::infinity(), second = best;
   std::optional<Eigen::Isometry3d> result;
   for (const Eigen::Isometry3d& pose : poses) {

@@ -22,8 +22,7 @@ struct FrontendParams {
   double min_overlap = 0.3;
   double doubtful_overlap = 0.6;
   double max_conflict = 0.2;
-  /// Far beyond the noise of a good odometry; a wheel that slips now and then is not yet lost.
-  double max_jump = 10.0;
+  double max_jump = 6.0;
   double max_drift_translation = 0.05;
   double max_drift_rotation = degToRad(3.0);
   double keyframe_overlap = 0.8;
@@ -53,9 +52,9 @@ struct FrontendParams {
     f(p.max_conflict,
       Field{"max_conflict", "", 0.0, 1.0,
             "and lost if so much of what speaks stands where scan or map looked through"});
-    f(p.max_jump, Field{"max_jump", "", 1.0, 1e6,
-                        "and lost if it moved by so many standard deviations more than odometry "
-                        "says, or than it can move"});
+    f(p.max_jump,
+      Field{"max_jump", "", 1.0, 1e6,
+            "and lost if it moved since the last scan by so many times the typical speeds"});
     f(p.max_drift_translation,
       Field{"max_drift_translation", "m", 1e-4, 100.0,
             "a scan whose pose is less certain in any direction (standard deviation) is lost"});
