@@ -16,17 +16,12 @@ namespace {
 
 using Index = std::size_t;
 
-double voxelSize(const MapState& map, int keyframe, const MapperParams& params) {
-  return params.registration.surfel_size_ratio *
-         map.keyframes[Index(keyframe)].features.cloud_in_body.spacing;
-}
-
 /// Keyframes near the view of `keyframe`, as far as drift allows, but not tied to it; nearest
 /// first, each at a place of its own.
 std::vector<int> candidates(const MapState& map, int keyframe, const std::vector<double>& variances,
                             const MapperParams& params) {
   const LoopParams& loop = params.loop;
-  const double connected = std::pow(loop.connected_ratio * voxelSize(map, keyframe, params), 2);
+  const double connected = connectedVariance(map, keyframe, params);
   const Eigen::Vector3d here = map.keyframes[Index(keyframe)].viewCentre();
   std::vector<std::pair<double, int>> near;
   for (int k = 0; k < keyframe; ++k) {
@@ -63,19 +58,6 @@ PosePrior driftedPose(const Keyframe& keyframe, double variance) {
       Eigen::Vector3d::Constant(1.0 / variance);
   prior.information = information.asDiagonal();
   return prior;
-}
-
-PlaceClaim claimOf(const MapState& map, int keyframe, const PlaceMatch& match) {
-  const Keyframe& claimant = map.keyframes[Index(keyframe)];
-  PlaceClaim claim;
-  claim.keyframe_a = match.keyframe;
-  claim.keyframe_b = keyframe;
-  claim.keyframe_a_from_b = match.keyframe_from_body;
-  claim.information = match.information;
-  claim.map_a_from_map_b = map.keyframes[Index(match.keyframe)].map_from_body *
-                           match.keyframe_from_body * claimant.map_from_body.inverse();
-  claim.place_in_map_b = claimant.viewCentre();
-  return claim;
 }
 
 /// How far the present poses are from a claim [m]: of what keyframe b sees, and by the turn of its
@@ -150,7 +132,7 @@ bool LoopCloser::close(MapState& map) {
     const auto match = matchPlace(map, candidate, keyframe.features, keyframe.features,
                                   driftedPose(keyframe, variance), params_);
     if (!match) continue;
-    const PlaceClaim claim = claimOf(map, newest, *match);
+    const PlaceClaim claim = claimOf(map, *match, map, newest);
     if (disagreement(map, claim) > params_.loop.drift_gate * std::sqrt(variance)) continue;
     claims_.add(claim);
   }

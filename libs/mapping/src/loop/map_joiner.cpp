@@ -118,20 +118,14 @@ void MapJoiner::claim(const std::vector<MapPart>& parts, Index claimant, int key
   const MapPart& own = parts[claimant];
   const Keyframe& scan = own.map.keyframes[Index(keyframe)];
   const Place own_place =
-      placeOf(own.map, keyframe, placeAround(own.map, keyframe, params_), params_);
+      placeOf(own.map, keyframe,
+              connectedViews(own.map, keyframe, params_.loop.place_keyframes, params_), params_);
   for (const Candidate& c : candidates(parts, claimant, scan.features.primitives_in_body)) {
     const MapPart& other = parts[c.part];
     const auto match =
         matchPlace(other.map, c.keyframe, scan.features, own_place.features, std::nullopt, params_);
     if (!match) continue;
-    PlaceClaim claim;
-    claim.keyframe_a = match->keyframe;
-    claim.keyframe_b = keyframe;
-    claim.keyframe_a_from_b = match->keyframe_from_body;
-    claim.information = match->information;
-    claim.map_a_from_map_b = other.map.keyframes[Index(match->keyframe)].map_from_body *
-                             match->keyframe_from_body * scan.map_from_body.inverse();
-    claim.place_in_map_b = scan.viewCentre();
+    PlaceClaim claim = claimOf(other.map, *match, own.map, keyframe);
     claim.clarity = match->clarity;
     if (reachable(other.map, own.map, claim.map_a_from_map_b, params_))
       pool(other.id, own.id).add(claim);

@@ -17,13 +17,6 @@ const Keyframe& keyframeOf(const MapState& map, int id) {
   return map.keyframes[static_cast<std::size_t>(id)];
 }
 
-/// Largest variance of a keyframe that is matched as part of a place.
-double connectedVariance(const MapState& map, int keyframe, const MapperParams& params) {
-  const double voxel = params.registration.surfel_size_ratio *
-                       keyframeOf(map, keyframe).features.cloud_in_body.spacing;
-  return std::pow(params.loop.connected_ratio * voxel, 2);
-}
-
 PlaceMatch describe(const MapState& map, int keyframe, const MatchResult& match) {
   const Eigen::Isometry3d& map_from_keyframe = keyframeOf(map, keyframe).map_from_body;
   Matrix6d map_from_local = Matrix6d::Zero();
@@ -35,16 +28,23 @@ PlaceMatch describe(const MapState& map, int keyframe, const MatchResult& match)
 
 }  // namespace
 
-std::vector<int> placeAround(const MapState& map, int keyframe, const MapperParams& params) {
+double connectedVariance(const MapState& map, int keyframe, const MapperParams& params) {
+  const double voxel = params.registration.surfel_size_ratio *
+                       keyframeOf(map, keyframe).features.cloud_in_body.spacing;
+  return std::pow(params.loop.connected_ratio * voxel, 2);
+}
+
+std::vector<int> connectedViews(const MapState& map, int keyframe, int count,
+                                const MapperParams& params) {
   return nearestViews(map, keyframe, relativeVariances(map, keyframe),
-                      connectedVariance(map, keyframe, params), params.loop.place_keyframes);
+                      connectedVariance(map, keyframe, params), count);
 }
 
 std::optional<PlaceMatch> matchPlace(const MapState& map, int keyframe, const ScanFeatures& scan,
                                      const AlignmentInput& surroundings,
                                      const std::optional<PosePrior>& expected,
                                      const MapperParams& params) {
-  const std::vector<int> place = placeAround(map, keyframe, params);
+  const std::vector<int> place = connectedViews(map, keyframe, params.loop.place_keyframes, params);
   const LocalMap local = localMapOf(map, place, params);
   if (expected) {
     const MatchResult match = matchScan(scan, local, *expected, params.registration);
@@ -64,6 +64,20 @@ std::optional<PlaceMatch> matchPlace(const MapState& map, int keyframe, const Sc
   PlaceMatch result = describe(map, keyframe, match);
   result.clarity = alignment.clarity;
   return result;
+}
+
+PlaceClaim claimOf(const MapState& map_a, const PlaceMatch& match, const MapState& map_b,
+                   int keyframe_b) {
+  const Keyframe& claimant = keyframeOf(map_b, keyframe_b);
+  PlaceClaim claim;
+  claim.keyframe_a = match.keyframe;
+  claim.keyframe_b = keyframe_b;
+  claim.keyframe_a_from_b = match.keyframe_from_body;
+  claim.information = match.information;
+  claim.map_a_from_map_b = keyframeOf(map_a, match.keyframe).map_from_body *
+                           match.keyframe_from_body * claimant.map_from_body.inverse();
+  claim.place_in_map_b = claimant.viewCentre();
+  return claim;
 }
 
 }  // namespace opp::mapping

@@ -5,12 +5,11 @@
 #include "opp/mapping/backend/settle_map.h"
 #include "opp/mapping/frontend/build_local_map.h"
 #include "opp/mapping/frontend/insert_keyframe.h"
-#include "opp/mapping/loop/keyframe_graph.h"
+#include "opp/mapping/loop/match_place.h"
 
 #include <Eigen/Eigenvalues>
 
 #include <algorithm>
-#include <cmath>
 #include <utility>
 
 namespace opp::mapping {
@@ -85,7 +84,8 @@ void Mapper::addKeyframe(ScanFeatures scan, const MatchResult& match) {
   settleMap(map, std::max(1, id + 1 - params_.backend.window), params_);
   if (params_.loop.close_loops) loop_closer_.close(map);
   if (joiner_.joinNewest(parts_)) loop_closer_.reset();
-  local_ = localKeyframes(active());
+  const int newest = static_cast<int>(active().keyframes.size()) - 1;
+  local_ = connectedViews(active(), newest, params_.frontend.local_keyframes, params_);
   tracker_.setLocalMap(localMapOf(active(), local_, params_));
   tracker_.correct(active().keyframes.back().map_from_body);
 }
@@ -96,17 +96,6 @@ void Mapper::follow(const ScanFeatures& scan, const Eigen::Isometry3d& map_from_
   map.scans.push_back({scan.timestamp, scan.session, scan.scan_index,
                        static_cast<int>(map.keyframes.size()) - 1,
                        keyframe_from_map * map_from_body});
-}
-
-/// Keyframes that look where the newest one does, and whose pose relative to it is known well
-/// enough to take their surfaces for one.
-std::vector<int> Mapper::localKeyframes(const MapState& map) const {
-  const int newest = static_cast<int>(map.keyframes.size()) - 1;
-  const double voxel =
-      params_.registration.surfel_size_ratio * map.keyframes.back().features.cloud_in_body.spacing;
-  return nearestViews(map, newest, relativeVariances(map, newest),
-                      std::pow(params_.loop.connected_ratio * voxel, 2),
-                      params_.frontend.local_keyframes);
 }
 
 void Mapper::finish() {

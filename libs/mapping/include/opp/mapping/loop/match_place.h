@@ -4,6 +4,7 @@
 
 #include "opp/mapping/core/map_state.h"
 #include "opp/mapping/core/mapper_params.h"
+#include "opp/mapping/loop/claim_pool.h"
 #include "opp/mapping/registration/alignment_input.h"
 #include "opp/mapping/registration/match_scan.h"
 
@@ -21,9 +22,14 @@ struct PlaceMatch {
   double clarity = 0.0;  ///< see GlobalAlignment; 0 where the expected pose was right
 };
 
-/// The keyframes that make up the place of one keyframe: itself and those that look there and whose
-/// relative poses are well known; at most `LoopParams::place_keyframes`, ascending.
-std::vector<int> placeAround(const MapState& map, int keyframe, const MapperParams& params);
+/// Largest variance [m²] of a keyframe's position relative to `keyframe` at which the surfaces of
+/// both are taken for one without further proof (`LoopParams::connected_ratio`).
+double connectedVariance(const MapState& map, int keyframe, const MapperParams& params);
+
+/// At most `count` keyframes, ascending: the given one and those that look where it does and whose
+/// poses relative to it are known well enough (`connectedVariance`).
+std::vector<int> connectedViews(const MapState& map, int keyframe, int count,
+                                const MapperParams& params);
 
 /// Looks for a scan at the place of one keyframe. With an `expected` pose of the body in the map
 /// the scan is registered from there first; if that fails, or without it, the scan's `surroundings`
@@ -34,5 +40,10 @@ std::optional<PlaceMatch> matchPlace(const MapState& map, int keyframe, const Sc
                                      const AlignmentInput& surroundings,
                                      const std::optional<PosePrior>& expected,
                                      const MapperParams& params);
+
+/// What a match of keyframe `keyframe_b` of `map_b` in `map_a` claims about the two maps (or the
+/// same map before and after drift).
+PlaceClaim claimOf(const MapState& map_a, const PlaceMatch& match, const MapState& map_b,
+                   int keyframe_b);
 
 }  // namespace opp::mapping

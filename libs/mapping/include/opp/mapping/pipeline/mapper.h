@@ -58,7 +58,6 @@ class Mapper {
   FrameResult begin(ScanFeatures scan, const std::optional<Eigen::Isometry3d>& odom_from_body);
   void addKeyframe(ScanFeatures scan, const MatchResult& match);
   void follow(const ScanFeatures& scan, const Eigen::Isometry3d& map_from_body);
-  std::vector<int> localKeyframes(const MapState& map) const;
 
   MapperParams params_;
   Eigen::Isometry3d initial_pose_ = Eigen::Isometry3d::Identity();
