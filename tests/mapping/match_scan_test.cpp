@@ -175,6 +175,35 @@ TEST(MatchScan, NoiseOnABareWallDoesNotPassForStructure) {
   }
 }
 
+TEST(MatchScan, DoesNotSlideAlongAWallToSuitALandmarkThatIsSlightlyOff) {
+  // A board on a wall; its landmark is turned by 0.2° and 2 mm off, which 0.6 m along the wall
+  // mend.
+  const test::Rectangles wall = {{{2.0, 0.0, 1.3}, {0.0, 0.0, 1.0}, {0.0, 1.5, 0.0}},
+                                 {{1.9, 0.6, 1.3}, {0.0, 0.0, 0.8}, {0.0, 0.4, 0.0}}};
+  for (std::uint64_t seed = 0; seed < 20; ++seed) {
+    ScanAndMap both = seeTwice(wall, seed, true, options(0.001));
+    std::vector<Plane> planes = both.map.landmarkPlanes();
+    for (Plane& plane : planes) {
+      const Eigen::Vector3d board(1.9, 0.6, 1.3);
+      if (std::abs(plane.signedDistance(board)) > 0.01) continue;
+      const Eigen::AngleAxisd turn(degToRad(0.2), Eigen::Vector3d::UnitZ());
+      plane = Plane::fromPointNormal(board + 0.002 * plane.normal(), turn * plane.normal());
+    }
+    both.map.setLandmarks(planes);
+    PosePrior prior;
+    prior.map_from_body = both.map_from_body;
+    prior.information.diagonal() << Eigen::Vector3d::Constant(std::pow(degToRad(1.0), -2)),
+        Eigen::Vector3d::Constant(std::pow(0.2, -2));
+    const MatchResult result = matchScan(both.scan, both.map, prior, RegistrationParams{});
+    const Eigen::Vector3d error =
+        result.map_from_body.translation() - both.map_from_body.translation();
+    EXPECT_NEAR(error.x(), 0.0, 3e-3) << "seed " << seed;
+    EXPECT_NEAR(error.y(), 0.0, 0.02) << "seed " << seed;
+    EXPECT_NEAR(error.z(), 0.0, 0.02) << "seed " << seed;
+    EXPECT_GT(std::sqrt(result.covariance(4, 4)), 0.1) << "seed " << seed;
+  }
+}
+
 TEST(MatchScan, EmptyScanOrMapKeepsThePrior) {
   const ScanAndMap both = seeTwice(test::furnishedRoom(1), 1, false, options(0.0));
   test::Random random(4);

@@ -33,10 +33,29 @@ TEST(NormalNoise, IsWhatNoisyNormalsAddToTheHessian) {
     mean += jacobian * jacobian.transpose() / count;
   }
   const Vector6d exact = pointToPlaneJacobian(arm, normal);
-  const Matrix6d expected = exact * exact.transpose() + sigma * sigma * normalNoise(arm, normal);
+  NormalNoise noise;
+  noise.add(1.0, arm, 1.0, exact);
+  const Matrix6d expected = exact * exact.transpose() + sigma * sigma * noise.sum();
   // Largest term 2·arm·σ/√count of the mixed products = 2e-4, times 4 for 36 entries.
   EXPECT_LT((mean - expected).cwiseAbs().maxCoeff(), 8e-4);
   EXPECT_NEAR(expected(3, 3), sigma * sigma, 1e-12);
+}
+
+TEST(NormalNoise, AddsUpOverWeightedResiduals) {
+  test::Random random(4);
+  NormalNoise both;
+  Matrix6d expected = Matrix6d::Zero();
+  for (int k = 0; k < 20; ++k) {
+    const Eigen::Vector3d arm = random.vector(3.0);
+    const Vector6d jacobian = pointToPlaneJacobian(arm, random.unitVector());
+    const double weight = random.uniform(0.1, 2.0);
+    NormalNoise one;
+    one.add(1.0, arm, 1.0, jacobian);
+    expected += weight * one.sum();
+    const double scale = random.uniform(0.5, 2.0);
+    both.add(weight / (scale * scale), scale * arm, scale, scale * jacobian);
+  }
+  EXPECT_TRUE(both.sum().isApprox(expected, 1e-12));
 }
 
 TEST(WithoutNoise, LeavesWhatIsRealAndNothingNegative) {

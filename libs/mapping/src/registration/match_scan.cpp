@@ -4,7 +4,9 @@
 
 #include "opp/mapping/registration/plane_samples.h"
 
+#include "registration/associate_planes.h"
 #include "registration/match_input.h"
+#include "registration/normal_equations.h"
 #include "registration/observability.h"
 #include "registration/point_matches.h"
 
@@ -13,7 +15,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 
 namespace opp::mapping {
 namespace {
@@ -23,17 +24,6 @@ namespace {
 constexpr double kFirstAnnealing = 0.25;
 /// The noise of normals is only known roughly; what may be noise shall not pass for structure.
 constexpr double kNoiseCaution = 2.0;
-
-/// Normal equations of one Gauss–Newton step in (ω, v), with what the step saw.
-struct NormalEquations {
-  Matrix6d hessian = Matrix6d::Zero();
-  Vector6d gradient = Vector6d::Zero();
-
-  void add(const Vector6d& jacobian, double residual, double weight) {
-    hessian.noalias() += weight * jacobian * jacobian.transpose();
-    gradient.noalias() += weight * residual * jacobian;
-  }
-};
 
 class Matcher {
  public:
@@ -55,10 +45,9 @@ class Matcher {
     for (std::size_t level = firstLevel(); level > 0; --level)
       iterate(map_.levels()[level], kMinIterations, kFirstAnnealing);
     iterate(map_.fine(), params_.max_iterations, kFirstAnnealing);
-    associatePlanes();
+    associatePlanes(points_, pose_, map_, params_, planes_);
     weighting_ = Weighting::kByPoint;
     result.converged = iterate(map_.fine(), params_.max_iterations, 0.0);
-    carryByPrior();
     report(result);
     return result;
   }
@@ -98,25 +87,28 @@ class Matcher {
   }
 
   NormalEquations assemble(const SurfelMap& surfels, double annealing) const {
-    NormalEquations equations;
+    Residuals residuals;
     const double extra_variance = annealing * annealing;
-    addPoints(surfels, extra_variance, equations);
+    addPoints(surfels, extra_variance, residuals);
     for (const ScanPlane& plane : planes_) {
-      if (plane.landmark >= 0) addPlane(plane, extra_variance, equations);
+      if (plane.landmark >= 0) addPlane(plane, extra_variance, residuals);
     }
-    return equations;
+    return equationsOf(residuals);
   }
 
-  void addPoints(const SurfelMap& surfels, double extra_variance,
-                 NormalEquations& equations) const {
+  NormalEquations equationsOf(const Residuals& residuals) const {
+    return residuals.equations(map_.normalVariance(),
+                               params_.landmark_normal_noise * params_.landmark_normal_noise);
+  }
+
+  void addPoints(const SurfelMap& surfels, double extra_variance, Residuals& residuals) const {
     forEachMatch(surfels, extra_variance, [&](const ScanPoint& p, const PointMatch& match) {
       const double worth = weighting_ == Weighting::kBySurface ? p.worth : 1.0;
-      equations.add(pointToPlaneJacobian(match.arm, match.normal), match.residual,
-                    worth * match.kernel / match.variance);
+      residuals.addPoint(match, worth * match.kernel / match.variance);
     });
   }
 
-  void addPlane(const ScanPlane& plane, double extra_variance, NormalEquations& equations) const {
+  void addPlane(const ScanPlane& plane, double extra_variance, Residuals& residuals) const {
     const Plane& landmark = map_.landmarkPlanes()[static_cast<std::size_t>(plane.landmark)];
     const double squared_error =
         plane.moments_in_body.squaredError(transformed(pose_.inverse(), landmark));
@@ -130,9 +122,7 @@ class Matcher {
       const double scale = plane.factor(3, k);
       const double residual = landmark.normal().dot(rotated) +
                               scale * (landmark.normal().dot(pose_.translation()) + landmark.d());
-      Vector6d jacobian;
-      jacobian << rotated.cross(landmark.normal()), scale * landmark.normal();
-      equations.add(jacobian, residual, weight);
+      residuals.addPlane(rotated, scale, landmark.normal(), residual, weight);
     }
   }
 
@@ -142,13 +132,16 @@ class Matcher {
                       {params_.kernel_width, extra_variance}, f);
   }
 
+  /// What the scan really fixes moves as it says; the rest is left to the prior, which pulls (ω, v)
+  /// toward difference(pose, prior). Its Jacobian is taken as the identity, exact for translation
+  /// and to second order in the rotation left to go. Else the pose would slide along a bare wall
+  /// wherever the noise of its surfels leads.
   Vector6d solve(const NormalEquations& equations) const {
-    // The prior pulls (ω, v) toward difference(pose, prior); its Jacobian is taken as the identity,
-    // exact for translation and to second order in the rotation left to go.
-    const Matrix6d hessian = equations.hessian + prior_.information;
-    const Vector6d gradient =
-        equations.gradient - prior_.information * difference(pose_, prior_.map_from_body);
-    return -solveDamped(hessian, gradient);
+    const Matrix6d observed = withoutNormalNoise(equations);
+    const Vector6d of_scan = solveDamped(equations.hessian, equations.gradient);
+    const Vector6d of_prior = difference(pose_, prior_.map_from_body);
+    return solveDamped(observed + prior_.information,
+                       prior_.information * of_prior - observed * of_scan);
   }
 
   /// A direction that neither scan nor prior fixes has a zero pivot: LDLT with a tiny ridge leaves
@@ -159,72 +152,34 @@ class Matcher {
     return damped.ldlt().solve(vector);
   }
 
-  /// Each scan plane votes for the landmarks of the surfels that its points match.
-  void associatePlanes() {
-    std::vector<std::map<int, int>> votes(planes_.size());
-    std::vector<int> matched(planes_.size(), 0);
-    const Eigen::Isometry3f pose = pose_.cast<float>();
-    for (const ScanPoint& p : points_) {
-      if (p.label < 0) continue;
-      const Surfel* surfel =
-          map_.fine().closest(pose * p.point_in_body, pose.linear() * p.normal_in_body);
-      if (surfel == nullptr) continue;
-      const auto plane = static_cast<std::size_t>(p.label);
-      ++matched[plane];
-      if (surfel->landmark >= 0) ++votes[plane][surfel->landmark];
-    }
-    for (std::size_t k = 0; k < planes_.size(); ++k) {
-      const auto best =
-          std::max_element(votes[k].begin(), votes[k].end(),
-                           [](const auto& a, const auto& b) { return a.second < b.second; });
-      if (best == votes[k].end() || best->second < params_.plane_vote_share * matched[k]) continue;
-      if (fits(planes_[k], best->first)) planes_[k].landmark = best->first;
-    }
+  Matrix6d withoutNormalNoise(const NormalEquations& equations) const {
+    if (range_ <= 0.0) return equations.hessian;
+    return withoutNoise(equations.hessian, kNoiseCaution * equations.noise, range_);
   }
 
-  /// The samples' root mean square distance to the landmark, over its noise, is within the gate.
-  bool fits(const ScanPlane& plane, int landmark) const {
-    const Plane in_body =
-        transformed(pose_.inverse(), map_.landmarkPlanes()[static_cast<std::size_t>(landmark)]);
-    const double squared_sigmas = plane.moments_in_body.squaredError(in_body) / plane.samples;
-    return squared_sigmas < params_.plane_gate_sigmas * params_.plane_gate_sigmas;
-  }
-
-  /// What the points fix, without what the noise of surfels' normals only seems to fix.
-  /// \param worthOf weight of a point, 0: left out
+  /// What the points fix. \param worthOf weight of a point, 0: left out
   template <typename F>
   Matrix6d observedByPoints(F&& worthOf) const {
-    Matrix6d hessian = Matrix6d::Zero(), noise = Matrix6d::Zero();
+    Residuals residuals;
     forEachMatch(map_.fine(), 0.0, [&](const ScanPoint& p, const PointMatch& match) {
-      const double weight = worthOf(p) * match.kernel / match.variance;
-      const Vector6d jacobian = pointToPlaneJacobian(match.arm, match.normal);
-      hessian.noalias() += weight * jacobian * jacobian.transpose();
-      if (match.landmark < 0)
-        noise += weight * map_.normalVariance() * normalNoise(match.arm, match.normal);
+      residuals.addPoint(match, worthOf(p) * match.kernel / match.variance);
     });
-    return range_ > 0.0 ? withoutNoise(hessian, kNoiseCaution * noise, range_) : hessian;
-  }
-
-  /// Directions in which the scan says little come from the prediction, in proportion.
-  void carryByPrior() {
-    const Matrix6d observed = observedByPoints([](const ScanPoint&) { return 1.0; });
-    const Vector6d to_prior = difference(pose_, prior_.map_from_body);
-    pose_ =
-        retract(pose_, solveDamped(observed + prior_.information, prior_.information * to_prior));
+    return withoutNormalNoise(equationsOf(residuals));
   }
 
   void report(MatchResult& result) const {
     result.map_from_body = pose_;
-    NormalEquations of_planes;
+    // Planes stand for their points; of the others, what one says given all of its surface.
+    Residuals residuals;
     for (std::size_t k = 0; k < planes_.size(); ++k) {
       if (planes_[k].landmark < 0) continue;
-      addPlane(planes_[k], 0.0, of_planes);
+      addPlane(planes_[k], 0.0, residuals);
       result.planes.push_back({static_cast<int>(k), planes_[k].landmark});
     }
-    // Planes already stand for their points.
-    result.information = of_planes.hessian + observedByPoints([&](const ScanPoint& p) {
-                           return onLandmark(p) ? 0.0 : p.worth;
-                         });
+    forEachMatch(map_.fine(), 0.0, [&](const ScanPoint& p, const PointMatch& match) {
+      if (!onLandmark(p)) residuals.addPoint(match, p.worth * match.kernel / match.variance);
+    });
+    result.information = withoutNormalNoise(equationsOf(residuals));
     result.covariance = covarianceOf(result.information + prior_.information);
     double squared_distance = 0.0, agreeing = 0.0;
     forEachMatch(map_.fine(), 0.0, [&](const ScanPoint&, const PointMatch& match) {

@@ -8,17 +8,16 @@
 
 namespace opp::mapping {
 
-Matrix6d normalNoise(const Eigen::Vector3d& arm, const Eigen::Vector3d& normal) {
+Matrix6d NormalNoise::sum() const {
   // J = A·n with A = ([arm]×; I), so Cov(J) = A·Cov(n)·Aᵀ and Cov(n) = σ²(I − n·nᵀ).
-  Eigen::Matrix<double, 6, 3> a;
-  a << 0.0, -arm.z(), arm.y(),  //
-      arm.z(), 0.0, -arm.x(),   //
-      -arm.y(), arm.x(), 0.0,   //
-      1.0, 0.0, 0.0,            //
-      0.0, 1.0, 0.0,            //
-      0.0, 0.0, 1.0;
-  const Vector6d jacobian = a * normal;
-  return a * a.transpose() - jacobian * jacobian.transpose();
+  Eigen::Matrix3d cross;
+  cross << 0.0, -arms_.z(), arms_.y(),  //
+      arms_.z(), 0.0, -arms_.x(),       //
+      -arms_.y(), arms_.x(), 0.0;
+  Matrix6d all;
+  all << squared_arms_.trace() * Eigen::Matrix3d::Identity() - squared_arms_, cross,
+      cross.transpose(), squared_scales_ * Eigen::Matrix3d::Identity();
+  return all - seen_;
 }
 
 Matrix6d withoutNoise(const Matrix6d& hessian, const Matrix6d& noise, double range) {

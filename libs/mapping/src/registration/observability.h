@@ -16,11 +16,29 @@ inline Vector6d pointToPlaneJacobian(const Eigen::Vector3d& arm, const Eigen::Ve
   return jacobian;
 }
 
-/// What a normal with variance σ² about either tangent [rad²] adds to the expectation of J·Jᵀ of a
-/// point-to-plane residual, divided by σ². A noisy normal seems to tell of motion along a smooth
-/// surface; this is how much of it is noise (errors in variables: Fuller 1987, "Measurement Error
-/// Models").
-Matrix6d normalNoise(const Eigen::Vector3d& arm, const Eigen::Vector3d& normal);
+/// What noisy normals add to the expectation of Σ w·J·Jᵀ over point-to-plane residuals, divided by
+/// the variance of a normal about either tangent [rad²]. A noisy normal seems to tell of motion
+/// along a smooth surface; this is how much of it is noise (errors in variables: Fuller 1987,
+/// "Measurement Error Models").
+class NormalNoise {
+ public:
+  /// Of a residual scale·n·(p − m). \param scaled_arm scale times the arm; \param jacobian scale
+  /// times pointToPlaneJacobian(arm, normal). O(1).
+  void add(double weight, const Eigen::Vector3d& scaled_arm, double scale,
+           const Vector6d& jacobian) {
+    squared_scales_ += weight * scale * scale;
+    arms_ += weight * scale * scaled_arm;
+    squared_arms_.noalias() += weight * scaled_arm * scaled_arm.transpose();
+    seen_.noalias() += weight * jacobian * jacobian.transpose();
+  }
+  Matrix6d sum() const;
+
+ private:
+  double squared_scales_ = 0.0;
+  Eigen::Vector3d arms_ = Eigen::Vector3d::Zero();
+  Eigen::Matrix3d squared_arms_ = Eigen::Matrix3d::Zero();
+  Matrix6d seen_ = Matrix6d::Zero();
+};
 
 /// `hessian` less `noise`, with what becomes negative set to zero: the information that is left is
 /// real. Directions are compared with rotations in units of 1/`range` rad, the turn that moves

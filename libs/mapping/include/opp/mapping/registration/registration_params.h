@@ -19,6 +19,7 @@ struct RegistrationParams {
   int levels = 3;
   double normal_gate = degToRad(35.0);
   double normal_noise = degToRad(3.0);
+  double landmark_normal_noise = degToRad(0.25);
   double kernel_width = 2.5;
   int max_iterations = 30;
   double rotation_tolerance = 2e-5;
@@ -41,6 +42,8 @@ struct RegistrationParams {
     f(p.normal_noise,
       Field{"normal_noise", "rad", 1e-4, 0.5,
             "normals of surfels scatter so much, until plane landmarks show how much"});
+    f(p.landmark_normal_noise, Field{"landmark_normal_noise", "rad", 1e-6, 0.5,
+                                     "normals of plane landmarks are off so much"});
     f(p.kernel_width, Field{"kernel_width", "", 0.1, 100.0,
                             "Cauchy kernel: residual in sigmas at which influence peaks"});
     f(p.max_iterations,
