@@ -158,12 +158,23 @@ TEST(LinkKeyframe, ExpectsMoreDriftTheFartherViewsAreApart) {
     map.keyframes.back().map_from_body.translation().x() = k == 2 ? 0.0 : 4.0 * k;
   }
   const LoopParams params;
-  linkKeyframe({0, 1}, params, map);
+  linkKeyframe({0, 1}, Matrix6d::Zero(), params, map);
   ASSERT_EQ(map.links.size(), 2U);
   EXPECT_DOUBLE_EQ(map.links[0].variance, std::pow(params.step_sigma, 2));
   EXPECT_DOUBLE_EQ(map.links[1].variance,
                    std::pow(params.step_sigma, 2) + std::pow(4.0 * params.drift_ratio, 2));
   EXPECT_EQ(map.links[1].second, 2);
+}
+
+TEST(LinkKeyframe, CarriesWhatTheMatchLeftOpen) {
+  MapState map;
+  map.keyframes.resize(2);
+  Matrix6d covariance = Matrix6d::Zero();
+  covariance.diagonal() << 0.0, 1e-4, 0.0, 0.0, 0.0, 0.09;
+  const LoopParams params;
+  linkKeyframe({0}, covariance, params, map);
+  ASSERT_EQ(map.links.size(), 1U);
+  EXPECT_NEAR(map.links[0].variance, std::pow(params.step_sigma, 2) + 0.09 + 1e-4, 1e-12);
 }
 
 }  // namespace

@@ -25,6 +25,15 @@ MapState chain(int keyframes, double step_variance) {
   return map;
 }
 
+TEST(ViewVariance, CountsTurnsAtTheDistanceOfTheView) {
+  Keyframe keyframe;
+  Matrix6d covariance = Matrix6d::Zero();
+  covariance.diagonal() << 1e-4, 2e-4, 3e-4, 0.01, 0.04, 0.02;
+  EXPECT_NEAR(viewVariance(covariance, keyframe), 0.04 + 3e-4, 1e-12) << "no nearer than 1 m";
+  keyframe.view_centre_in_body = Eigen::Vector3d(0.0, 4.0, 3.0);
+  EXPECT_NEAR(viewVariance(covariance, keyframe), 0.04 + 25.0 * 3e-4, 1e-12);
+}
+
 TEST(RelativeVariances, AddUpAlongAChain) {
   const std::vector<double> variances = relativeVariances(chain(5, 0.25), 1);
   EXPECT_EQ(variances, (std::vector<double>{0.25, 0.0, 0.25, 0.5, 0.75}));

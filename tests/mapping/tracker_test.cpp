@@ -166,7 +166,7 @@ Started startAtWall(const std::optional<Eigen::Isometry3d>& odometry) {
 TEST(Tracker, ABareWallEndsInLostWithoutOdometry) {
   Started started = startAtWall(std::nullopt);
   double sigma = 0.0;
-  for (int step = 1; step <= 15; ++step) {
+  for (int step = 1; step <= 75; ++step) {
     const double time = 0.02 * step;
     const TrackResult result =
         started.tracker.track(wallFrom(0.5 * time, time), std::nullopt, started.map);
@@ -179,7 +179,64 @@ TEST(Tracker, ABareWallEndsInLostWithoutOdometry) {
     EXPECT_GT(std::sqrt(result.match.covariance(4, 4)), sigma);
     sigma = std::sqrt(result.match.covariance(4, 4));
   }
-  FAIL() << "0.3 s without any sight of the way along the wall";
+  FAIL() << "1.5 s without any sight of the way along the wall";
+}
+
+TEST(Tracker, FollowsABodyPastABareWallAndFindsTheWayOn) {
+  const test::Rectangle wall = {{2.0, 0.0, 1.3}, {0.0, 0.0, 2.0}, {0.0, 4.0, 0.0}};
+  const test::Rectangle floor = {{1.0, 0.0, 0.0}, {2.0, 0.0, 0.0}, {0.0, 4.0, 0.0}};
+  const test::Rectangle side = {{1.0, 3.0, 1.3}, {0.0, 0.0, 2.0}, {-2.0, 0.0, 0.0}};
+  const auto poseAfter = [](int step) {
+    Eigen::Isometry3d pose(Eigen::AngleAxisd(0.02 * step, Eigen::Vector3d::UnitZ()));
+    pose.translation() = Eigen::Vector3d(0.03 * step, 0.05 * step, 1.2);
+    return pose;
+  };
+  const auto see = [&](const test::Rectangles& scene, int step) {
+    test::SyntheticOptions options;
+    options.spacing = 0.08;
+    options.sigma = 0.003;
+    options.seed = static_cast<std::uint64_t>(step);
+    const Eigen::Isometry3d pose = poseAfter(step);
+    ScanFeatures scan =
+        test::trueFeatures(test::sampleScene(scene, pose.translation(), pose.inverse(), options));
+    scan.timestamp = kTimeStep * step;
+    return scan;
+  };
+  Started started;
+  MatchResult match;
+  match.map_from_body = poseAfter(0);
+  insertKeyframe(see({wall, floor, side}, 0), match, SensorModel(), started.map);
+  started.tracker.start({0.0, poseAfter(0)}, std::nullopt);
+  started.tracker.setLocalMap(localMapOf(started.map, {0}, MapperParams()));
+  int unobserved = 0;
+  for (int step = 1; step <= 15; ++step) {
+    const bool bare = step > 4 && step < 13;
+    const TrackResult result = started.tracker.track(
+        bare ? see({wall}, step) : see({wall, floor, side}, step), std::nullopt, started.map);
+    const Vector6d error = difference(poseAfter(step), result.match.map_from_body);
+    if (result.outcome == TrackOutcome::kUnobserved) {
+      ++unobserved;
+      EXPECT_TRUE(bare) << "step " << step;
+      EXPECT_FALSE(result.wants_keyframe) << "step " << step;
+      // What the wall shows is known all the time.
+      EXPECT_NEAR(error[3], 0.0, 3e-3) << "step " << step;
+      EXPECT_LT(error.segment<2>(1).norm(), 3e-3) << "step " << step;
+      continue;
+    }
+    ASSERT_TRUE(result.localized()) << "step " << step << ": " << describe(result.outcome);
+    if (bare) continue;
+    EXPECT_LT(error.head<3>().norm(), 3e-3) << "step " << step;
+    EXPECT_LT(error.tail<3>().norm(), 3e-3) << "step " << step;
+  }
+  EXPECT_GT(unobserved, 2);
+}
+
+TEST(Tracker, OncePositionIsForgottenNothingIsLookedFor) {
+  Started started = startAt(1, poseAt(0.0, 0.0));
+  ScanFeatures later = scanOf(1, 1, poseAt(0.0, 0.0));
+  later.timestamp = 30.0;
+  EXPECT_EQ(started.tracker.track(later, std::nullopt, started.map).outcome,
+            TrackOutcome::kForgotten);
 }
 
 TEST(Tracker, OdometryCarriesABareWall) {

@@ -11,6 +11,7 @@
 #include <Eigen/Eigenvalues>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <utility>
 
@@ -32,6 +33,8 @@ std::string_view describe(TrackOutcome outcome) {
       return "the body cannot have moved so far since the last scan";
     case TrackOutcome::kUnobserved:
       return "the scan leaves a direction open that was not seen for too long";
+    case TrackOutcome::kForgotten:
+      return "nothing was recognized for so long that the body may have turned around";
   }
   return "";
 }
@@ -41,6 +44,7 @@ Tracker::Tracker(const MapperParams& params) : params_(params), motion_(params.f
 void Tracker::start(const StampedPose& pose,
                     const std::optional<Eigen::Isometry3d>& odom_from_body) {
   motion_.start(pose, odom_from_body);
+  follows_ = true;
 }
 
 namespace {
@@ -56,7 +60,20 @@ bool excludesHalfTurn(const PosePrior& prior) {
   return kPi * kPi * rotation.eigenvalues()[0] >= kClearly;
 }
 
+double largestSigma(const Matrix6d& information, int first) {
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> part(
+      information.inverse().block<3, 3>(first, first), Eigen::EigenvaluesOnly);
+  return std::sqrt(std::max(part.eigenvalues()[2], 0.0));
+}
+
 }  // namespace
+
+/// Whether a prediction says enough to look for the body in the same map: repeating rooms and
+/// symmetric halls offer other places.
+bool Tracker::guides(const PosePrior& predicted) const {
+  return excludesHalfTurn(predicted) && largestSigma(predicted.information, 3) <=
+                                            params_.frontend.max_gap * params_.frontend.speed;
+}
 
 TrackResult Tracker::track(const ScanFeatures& scan,
                            const std::optional<Eigen::Isometry3d>& odom_from_body,
@@ -70,13 +87,19 @@ TrackResult Tracker::track(const ScanFeatures& scan,
   const PosePrior predicted = motion_.predict(scan.timestamp, odom_from_body);
   // Not by odometry: wheels slip, and that of a hand-held body may be a plane's.
   const PosePrior moved = motion_.lastPose(scan.timestamp);
+  if (!guides(predicted)) {
+    result.outcome = TrackOutcome::kForgotten;
+    return result;
+  }
   result = localize(scan, predicted, moved, newest);
-  if (!result.localized()) return result;
+  follows_ = result.localized();
+  if (!result.localized() && result.outcome != TrackOutcome::kUnobserved) return result;
   // Between keyframes, motion ties what neither planes nor points do.
   result.match.point_information += motion_.informationSinceAnchor(scan.timestamp, odom_from_body);
   motion_.update({scan.timestamp, result.match.map_from_body}, odom_from_body,
                  result.match.information);
-  result.wants_keyframe = wantsKeyframe(result.match, newest);
+  result.wants_keyframe =
+      result.localized() ? wantsKeyframe(result.match, newest) : !convincing(result.match);
   return result;
 }
 
@@ -91,7 +114,9 @@ TrackResult Tracker::localize(const ScanFeatures& scan, const PosePrior& predict
     TrackOutcome outcome = outcomeOf(match, scan, moved, newest);
     // What motion does not predict must explain most of the scan: a wrong pose far off can agree
     // with a good part of a map, and with no direction left open.
-    if (&prior != &predicted && !convincing(match)) outcome = TrackOutcome::kLittleOverlap;
+    const bool expected = &prior == &predicted;
+    if ((!expected || (!follows_ && outcome == TrackOutcome::kLocalized)) && !convincing(match))
+      outcome = TrackOutcome::kLittleOverlap;
     const bool localized = outcome == TrackOutcome::kLocalized;
     if (best.outcome != TrackOutcome::kNoMap && best.localized() >= localized &&
         (best.localized() != localized || best.match.overlap >= match.overlap))
@@ -101,7 +126,8 @@ TrackResult Tracker::localize(const ScanFeatures& scan, const PosePrior& predict
   };
   // Repeating rooms: what is likely and not contradicted goes before what agrees a little more.
   better(predicted);
-  if (best.localized()) return best;
+  // What is open with a prediction is so without.
+  if (best.localized() || best.outcome == TrackOutcome::kUnobserved) return best;
   better(last);
   if (best.localized()) return best;
   if (const auto start = relocalize(scan, last, newest)) better(*start);
@@ -148,7 +174,7 @@ std::optional<PosePrior> Tracker::relocalize(const ScanFeatures& scan, const Pos
   const GlobalAlignment alignment =
       alignGlobally(newest.features, scan, params_.primitives.sensor, params_.global_alignment);
   std::optional<Eigen::Isometry3d> pose;
-  if (alignment.outcome == AlignmentOutcome::kAligned && excludesHalfTurn(last)) {
+  if (alignment.outcome == AlignmentOutcome::kAligned) {
     pose = newest.map_from_body * alignment.target_from_source;
   } else if (alignment.outcome == AlignmentOutcome::kAmbiguous ||
              alignment.outcome == AlignmentOutcome::kUnconfirmed) {

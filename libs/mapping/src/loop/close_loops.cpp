@@ -43,11 +43,6 @@ std::vector<int> candidates(const MapState& map, int keyframe, const std::vector
   return chosen;
 }
 
-/// Drift of the position goes with turns at the distance of what is seen [m].
-double leverOf(const Keyframe& keyframe) {
-  return std::max(keyframe.view_centre_in_body.norm(), 1.0);
-}
-
 /// The keyframe's present pose, as uncertain as drift makes it relative to the candidate.
 PosePrior driftedPose(const Keyframe& keyframe, double variance) {
   PosePrior prior;
@@ -72,9 +67,11 @@ double disagreement(const MapState& map, const PlaceClaim& claim) {
 
 }  // namespace
 
-void linkKeyframe(const std::vector<int>& matched, const LoopParams& params, MapState& map) {
+void linkKeyframe(const std::vector<int>& matched, const Matrix6d& covariance,
+                  const LoopParams& params, MapState& map) {
   const int id = static_cast<int>(map.keyframes.size()) - 1;
   const Keyframe& keyframe = map.keyframes.back();
+  const double open = viewVariance(covariance, keyframe);
   for (const int other : matched) {
     const double distance = (map.keyframes[Index(other)].map_from_body.translation() -
                              keyframe.map_from_body.translation())
@@ -82,12 +79,20 @@ void linkKeyframe(const std::vector<int>& matched, const LoopParams& params, Map
     const double view_distance =
         (map.keyframes[Index(other)].viewCentre() - keyframe.viewCentre()).norm();
     const double drift = params.drift_ratio * std::max(distance, view_distance);
-    map.links.push_back({other, id, params.step_sigma * params.step_sigma + drift * drift});
+    map.links.push_back({other, id, params.step_sigma * params.step_sigma + drift * drift + open});
   }
+}
+
+void tie(const PlaceClaim& claim, const LoopParams& params, MapState& map) {
+  map.factors.relative_poses.push_back(
+      {claim.keyframe_a, claim.keyframe_b, claim.keyframe_a_from_b, claim.information, true});
+  map.links.push_back(
+      {claim.keyframe_a, claim.keyframe_b, params.step_sigma * params.step_sigma + claim.variance});
 }
 
 int acceptClaims(const std::vector<PlaceClaim>& claims, const MapperParams& params, MapState& map) {
   const MapFactors factors = map.factors;
+  const auto links = map.links;
   const LandmarkMap landmarks = map.landmarks;
   std::vector<std::pair<Eigen::Isometry3d, std::vector<int>>> keyframes;
   for (const Keyframe& k : map.keyframes) {
@@ -96,24 +101,18 @@ int acceptClaims(const std::vector<PlaceClaim>& claims, const MapperParams& para
   std::vector<PlaceClaim> kept = claims;
   const Index needed = std::min(claims.size(), Index(params.loop.confirmations));
   while (!kept.empty() && kept.size() >= needed) {
-    for (const PlaceClaim& claim : kept) {
-      map.factors.relative_poses.push_back(
-          {claim.keyframe_a, claim.keyframe_b, claim.keyframe_a_from_b, claim.information, true});
-    }
+    for (const PlaceClaim& claim : kept) tie(claim, params.loop, map);
     settleMap(map, 1, params);
     const auto denied = [&](const PlaceClaim& c) {
       return disagreement(map, c) > params.loop.agree_translation;
     };
     if (std::none_of(kept.begin(), kept.end(), denied)) {
-      for (const PlaceClaim& claim : kept) {
-        map.links.push_back(
-            {claim.keyframe_a, claim.keyframe_b, std::pow(params.loop.step_sigma, 2)});
-      }
       ++map.loop_closures;
       return static_cast<int>(kept.size());
     }
     kept.erase(std::remove_if(kept.begin(), kept.end(), denied), kept.end());
     map.factors = factors;
+    map.links = links;
     map.landmarks = landmarks;
     for (Index k = 0; k < keyframes.size(); ++k) {
       std::tie(map.keyframes[k].map_from_body, map.keyframes[k].landmark_of_plane) = keyframes[k];

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "opp/mapping/loop/keyframe_graph.h"
 
+#include <Eigen/Eigenvalues>
+
 #include <algorithm>
 #include <functional>
 #include <limits>
@@ -9,6 +11,20 @@
 #include <utility>
 
 namespace opp::mapping {
+
+double leverOf(const Keyframe& keyframe) {
+  return std::max(keyframe.view_centre_in_body.norm(), 1.0);
+}
+
+double viewVariance(const Matrix6d& covariance, const Keyframe& keyframe) {
+  const auto largest = [](const Eigen::Matrix3d& part) {
+    return Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(part, Eigen::EigenvaluesOnly)
+        .eigenvalues()[2];
+  };
+  const double lever = leverOf(keyframe);
+  return largest(covariance.bottomRightCorner<3, 3>()) +
+         lever * lever * largest(covariance.topLeftCorner<3, 3>());
+}
 
 std::vector<double> relativeVariances(const MapState& map, int from) {
   using Index = std::size_t;

@@ -3,6 +3,7 @@
 #include "opp/mapping/loop/map_joiner.h"
 
 #include "opp/mapping/backend/settle_map.h"
+#include "opp/mapping/loop/close_loops.h"
 #include "opp/mapping/loop/join_maps.h"
 #include "opp/mapping/loop/match_place.h"
 #include "opp/mapping/loop/place.h"
@@ -11,7 +12,6 @@
 #include "registration/verify_pose.h"
 
 #include <algorithm>
-#include <cmath>
 
 namespace opp::mapping {
 namespace {
@@ -145,12 +145,9 @@ bool MapJoiner::joinAgreed(std::vector<MapPart>& parts, Index claimant) {
     }
     const int first = static_cast<int>(host.map.keyframes.size());
     appendMap(host_from_guest, std::move(guest.map), host.map);
-    for (const PlaceClaim& claim : claims) {
-      const int keyframe_b = claim.keyframe_b + first;
-      host.map.factors.relative_poses.push_back(
-          {claim.keyframe_a, keyframe_b, claim.keyframe_a_from_b, claim.information, true});
-      host.map.links.push_back(
-          {claim.keyframe_a, keyframe_b, std::pow(params_.loop.step_sigma, 2)});
+    for (PlaceClaim claim : claims) {
+      claim.keyframe_b += first;
+      tie(claim, params_.loop, host.map);
     }
     ++host.map.loop_closures;
     settleMap(host.map, 1, params_);

@@ -7,6 +7,8 @@
 #include "opp/mapping/loop/place.h"
 #include "opp/mapping/registration/align_globally.h"
 
+#include "registration/observability.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -22,8 +24,12 @@ PlaceMatch describe(const MapState& map, int keyframe, const MatchResult& match)
   Matrix6d map_from_local = Matrix6d::Zero();
   map_from_local.topLeftCorner<3, 3>() = map_from_keyframe.linear();
   map_from_local.bottomRightCorner<3, 3>() = map_from_keyframe.linear();
-  return {keyframe, normalized(map_from_keyframe.inverse() * match.map_from_body),
-          map_from_local.transpose() * match.point_information * map_from_local, match.overlap};
+  PlaceMatch result;
+  result.keyframe = keyframe;
+  result.keyframe_from_body = normalized(map_from_keyframe.inverse() * match.map_from_body);
+  result.information = map_from_local.transpose() * match.point_information * map_from_local;
+  result.overlap = match.overlap;
+  return result;
 }
 
 }  // namespace
@@ -48,7 +54,13 @@ std::optional<PlaceMatch> matchPlace(const MapState& map, int keyframe, const Sc
   const LocalMap local = localMapOf(map, place, params);
   if (expected) {
     const MatchResult match = matchScan(scan, local, *expected, params.registration);
-    if (match.overlap >= params.loop.min_overlap) return describe(map, keyframe, match);
+    if (match.overlap >= params.loop.min_overlap) {
+      PlaceMatch result = describe(map, keyframe, match);
+      result.variance = viewVariance(covarianceOf(match.information), keyframeOf(map, keyframe));
+      // What the scan leaves open is still where it was expected, which proves nothing.
+      if (result.variance > std::pow(params.loop.agree_translation, 2)) return std::nullopt;
+      return result;
+    }
   }
   const Place merged = placeOf(map, keyframe, place, params);
   const GlobalAlignment alignment = alignGlobally(
@@ -63,6 +75,7 @@ std::optional<PlaceMatch> matchPlace(const MapState& map, int keyframe, const Sc
   if (match.overlap < params.global_alignment.min_overlap) return std::nullopt;
   PlaceMatch result = describe(map, keyframe, match);
   result.clarity = alignment.clarity;
+  result.variance = viewVariance(alignment.covariance, keyframeOf(map, keyframe));
   return result;
 }
 
@@ -74,6 +87,7 @@ PlaceClaim claimOf(const MapState& map_a, const PlaceMatch& match, const MapStat
   claim.keyframe_b = keyframe_b;
   claim.keyframe_a_from_b = match.keyframe_from_body;
   claim.information = match.information;
+  claim.variance = match.variance;
   claim.map_a_from_map_b = keyframeOf(map_a, match.keyframe).map_from_body *
                            match.keyframe_from_body * claimant.map_from_body.inverse();
   claim.place_in_map_b = claimant.viewCentre();

@@ -6,6 +6,7 @@
 #include "opp/mapping/frontend/build_local_map.h"
 #include "opp/mapping/frontend/insert_keyframe.h"
 #include "opp/mapping/loop/match_place.h"
+#include "opp/mapping/loop/split_map.h"
 
 #include <Eigen/Eigenvalues>
 
@@ -43,16 +44,20 @@ FrameResult Mapper::add(ScanFeatures scan, const std::optional<Eigen::Isometry3d
   if (!continues_) return begin(std::move(scan), odom_from_body);
   TrackResult track = tracker_.track(scan, odom_from_body, active());
   FrameResult result{track.localized(), track.wants_keyframe, track.match.overlap, track.match.rms};
-  if (!track.localized()) {
+  if (!track.localized() && track.outcome != TrackOutcome::kUnobserved) {
     if (++lost_in_a_row_ < params_.loop.lost_scans) return result;
     return begin(std::move(scan), odom_from_body);
   }
   lost_in_a_row_ = 0;
-  if (track.wants_keyframe) {
-    addKeyframe(std::move(scan), track.match);
+  if (track.localized()) {
+    if (!track.wants_keyframe) follow(scan, track.match.map_from_body);
   } else {
-    follow(scan, track.match.map_from_body);
+    // A body past a bare wall is followed until it sees again what it knows, or enough of what is
+    // new to go on from there: the map knows how loosely the two are tied, see `finish`.
+    result.localized = result.is_keyframe =
+        track.wants_keyframe && canFoundMap(scan.cloud_in_body, params_.loop.min_normal_spread);
   }
+  if (result.is_keyframe) addKeyframe(std::move(scan), track.match);
   return result;
 }
 
@@ -80,7 +85,7 @@ void Mapper::addKeyframe(ScanFeatures scan, const MatchResult& match) {
   map.scans.push_back({keyframe.features.timestamp, keyframe.features.session,
                        keyframe.features.scan_index, id, Eigen::Isometry3d::Identity()});
   parts_.back().index.add(keyframe.features.primitives_in_body);
-  linkKeyframe(local_, params_.loop, map);
+  linkKeyframe(local_, match.covariance, params_.loop, map);
   settleMap(map, std::max(1, id + 1 - params_.backend.window), params_);
   if (params_.loop.close_loops) loop_closer_.close(map);
   if (joiner_.joinNewest(parts_)) loop_closer_.reset();
@@ -98,7 +103,22 @@ void Mapper::follow(const ScanFeatures& scan, const Eigen::Isometry3d& map_from_
                        keyframe_from_map * map_from_body});
 }
 
+void Mapper::splitParts() {
+  const double max_drift = params_.frontend.max_drift_translation;
+  std::vector<MapPart> parts;
+  for (MapPart& part : parts_) {
+    for (MapState& map : splitMap(std::move(part.map), max_drift * max_drift)) {
+      parts.emplace_back(next_part_++, params_.loop);
+      for (const Keyframe& keyframe : map.keyframes)
+        parts.back().index.add(keyframe.features.primitives_in_body);
+      parts.back().map = std::move(map);
+    }
+  }
+  parts_ = std::move(parts);
+}
+
 void Mapper::finish() {
+  splitParts();
   joiner_.joinAll(parts_);
   for (MapPart& part : parts_) settleMap(part.map, 1, params_);
   std::stable_sort(parts_.begin(), parts_.end(), [](const MapPart& a, const MapPart& b) {

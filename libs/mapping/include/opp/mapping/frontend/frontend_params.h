@@ -23,8 +23,9 @@ struct FrontendParams {
   double doubtful_overlap = 0.6;
   double max_conflict = 0.2;
   double max_jump = 6.0;
-  double max_drift_translation = 0.05;
+  double max_drift_translation = 0.2;
   double max_drift_rotation = degToRad(3.0);
+  double max_gap = 1.0;
   double keyframe_overlap = 0.8;
   double keyframe_rotation = degToRad(25.0);
   int local_keyframes = 15;
@@ -60,6 +61,9 @@ struct FrontendParams {
             "a scan whose pose is less certain in any direction (standard deviation) is lost"});
     f(p.max_drift_rotation,
       Field{"max_drift_rotation", "rad", 1e-4, 3.1415, "and one that is about any axis"});
+    f(p.max_gap, Field{"max_gap", "s", 1e-3, 1e3,
+                       "a body is not looked for in the same map once its place is predicted worse "
+                       "(standard deviation) than the typical speed takes it in this time"});
     f(p.keyframe_overlap, Field{"keyframe_overlap", "", 0.0, 1.0,
                                 "a scan of which a smaller share agrees becomes a keyframe"});
     f(p.keyframe_rotation, Field{"keyframe_rotation", "rad", 0.01, 3.1415,

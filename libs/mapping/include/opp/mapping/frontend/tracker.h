@@ -23,6 +23,7 @@ enum class TrackOutcome {
   kContradicted,   ///< what agrees is outweighed by what stands where the other looked through
   kImplausible,    ///< the body cannot have moved so since the last scan
   kUnobserved,     ///< a direction has not been seen for so long that no prediction can be trusted
+  kForgotten,      ///< lost for so long that the body may have turned around
 };
 
 /// One line for reports.
@@ -31,8 +32,10 @@ std::string_view describe(TrackOutcome outcome);
 /// What the tracker makes of one scan.
 struct TrackResult {
   TrackOutcome outcome = TrackOutcome::kNoMap;
-  bool wants_keyframe = false;  ///< the map would gain by this scan; false if not localized
-  MatchResult match;            ///< of the best attempt, also if it was not good enough
+  /// The map would gain by this scan, if it is localized; if a direction is open, that what it is
+  /// followed by goes out of sight.
+  bool wants_keyframe = false;
+  MatchResult match;  ///< of the best attempt, also if it was not good enough
 
   bool localized() const { return outcome == TrackOutcome::kLocalized; }
 };
@@ -50,7 +53,8 @@ class Tracker {
   void start(const StampedPose& pose, const std::optional<Eigen::Isometry3d>& odom_from_body);
 
   /// Localizes the next scan in the local map (of `map`, see `setLocalMap`). A scan that is not
-  /// localized leaves the tracker as it was, but for the time that goes by.
+  /// localized leaves the tracker as it was, but for the time that goes by; one that only leaves a
+  /// direction open (kUnobserved) still tells how the body moved in the others.
   TrackResult track(const ScanFeatures& scan,
                     const std::optional<Eigen::Isometry3d>& odom_from_body, const MapState& map);
 
@@ -58,8 +62,9 @@ class Tracker {
   /// or landmarks changed.
   void setLocalMap(LocalMap local_map) { local_map_ = std::move(local_map); }
 
-  /// The last localized scan became the newest keyframe, and optimization took it to `last_pose`.
+  /// The last scan became the newest keyframe, and optimization took it to `last_pose`.
   void correct(const Eigen::Isometry3d& last_pose) {
+    follows_ = true;
     motion_.correct(last_pose);
     motion_.setAnchor();
   }
@@ -70,6 +75,7 @@ class Tracker {
                        const Keyframe& newest) const;
   std::optional<PosePrior> relocalize(const ScanFeatures& scan, const PosePrior& last,
                                       const Keyframe& newest) const;
+  bool guides(const PosePrior& predicted) const;
   bool convincing(const MatchResult& match) const;
   TrackOutcome outcomeOf(const MatchResult& match, const ScanFeatures& scan, const PosePrior& moved,
                          const Keyframe& newest) const;
@@ -80,6 +86,7 @@ class Tracker {
   MapperParams params_;
   MotionModel motion_;
   std::optional<LocalMap> local_map_;
+  bool follows_ = true;  ///< the last scan was localized
 };
 
 /// Of several poses that explain a scan alike, the one that motion speaks for by odds of 100 to 1

@@ -16,7 +16,8 @@ struct PlaceClaim {
   int keyframe_a = 0;
   int keyframe_b = 0;
   Eigen::Isometry3d keyframe_a_from_b = Eigen::Isometry3d::Identity();  ///< as measured
-  Matrix6d information = Matrix6d::Zero();                              ///< of it, see PlaceMatch
+  double variance = 0.0;  ///< of keyframe b's view, worst direction, see `viewVariance` [m²]
+  Matrix6d information = Matrix6d::Zero();  ///< of it, see PlaceMatch
   /// What follows for the frames in which the poses of a and b are given: two maps, or a map before
   /// and after it drifted.
   Eigen::Isometry3d map_a_from_map_b = Eigen::Isometry3d::Identity();

@@ -11,8 +11,13 @@
 namespace opp::mapping {
 
 /// Links the newest keyframe to the keyframes that it was matched against, with the drift that is
-/// expected between them. \param matched ids of the local map's keyframes
-void linkKeyframe(const std::vector<int>& matched, const LoopParams& params, MapState& map);
+/// expected between them and what the match left open.
+/// \param matched ids of the local map's keyframes; \param covariance of the match, see MatchResult
+void linkKeyframe(const std::vector<int>& matched, const Matrix6d& covariance,
+                  const LoopParams& params, MapState& map);
+
+/// Adds what a claim says of two keyframes to the map's factors and links.
+void tie(const PlaceClaim& claim, const LoopParams& params, MapState& map);
 
 /// Recognizes places of a map that its newest keyframe has come back to.
 ///

@@ -3,10 +3,18 @@
 #pragma once
 
 #include "opp/mapping/core/map_state.h"
+#include "opp/mapping/core/se3.h"
 
 #include <vector>
 
 namespace opp::mapping {
+
+/// Drift of what a keyframe sees goes with turns at this distance [m].
+double leverOf(const Keyframe& keyframe);
+
+/// Variance [m²] of what a keyframe sees, in the worst direction, from the covariance of (ω, v) of
+/// its pose.
+double viewVariance(const Matrix6d& covariance, const Keyframe& keyframe);
 
 /// Variance [m²] of each keyframe's position relative to keyframe `from`: the least sum of link
 /// variances over all paths (Dijkstra); infinite where no link leads. An upper bound, since

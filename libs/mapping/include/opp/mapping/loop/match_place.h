@@ -18,7 +18,9 @@ struct PlaceMatch {
   int keyframe = 0;  ///< of the map, where the place is
   Eigen::Isometry3d keyframe_from_body = Eigen::Isometry3d::Identity();
   Matrix6d information = Matrix6d::Zero();  ///< of (ω, v) in the keyframe's frame, see `retract`
-  double overlap = 0.0;                     ///< see MatchResult
+  /// Of what is seen from there, by the scan (and its surroundings) alone, see `viewVariance` [m²].
+  double variance = 0.0;
+  double overlap = 0.0;  ///< see MatchResult
   double clarity = 0.0;  ///< see GlobalAlignment; 0 where the expected pose was right
 };
 
@@ -32,7 +34,8 @@ std::vector<int> connectedViews(const MapState& map, int keyframe, int count,
                                 const MapperParams& params);
 
 /// Looks for a scan at the place of one keyframe. With an `expected` pose of the body in the map
-/// the scan is registered from there first; if that fails, or without it, the scan's `surroundings`
+/// the scan is registered from there first, which counts only if the scan itself fixes its pose
+/// within `LoopParams::agree_translation`; if that fails, or without it, the scan's `surroundings`
 /// (in its body frame: the scan itself, or more that is known of where it stands) are aligned with
 /// the place with no guess. Nothing unless enough of the scan agrees (`LoopParams::min_overlap`) at
 /// one clear pose.

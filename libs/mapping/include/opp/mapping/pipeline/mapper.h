@@ -28,7 +28,8 @@ struct FrameResult {
 ///
 /// A session and a body that is lost begin a new part, which joins an older one once several
 /// keyframes prove where they are (MapJoiner); what is never proven stays a map of its own. The
-/// frame of a part is the body frame of its first scan, unless `setInitialPose` says otherwise.
+/// frame of a part is the body frame of its first scan, unless `setInitialPose` says otherwise; a
+/// part that was tied too loosely to another stays in that one's frame, about where it belongs.
 /// Deterministic.
 class Mapper {
  public:
@@ -43,8 +44,9 @@ class Mapper {
   /// A scan without samples is not localized.
   FrameResult add(ScanFeatures scan, const std::optional<Eigen::Isometry3d>& odom_from_body);
 
-  /// Looks once more for proof that parts belong together, gives up those that are too small, and
-  /// optimizes each as a whole; to be called after the last scan.
+  /// Takes parts asunder where they are tied so loosely that poses would be invented, looks once
+  /// more for proof that parts belong together, gives up those that are too small, and optimizes
+  /// each as a whole; to be called after the last scan.
   void finish();
 
   /// The parts that stayed apart, after `finish` those with most scans first; empty before the
@@ -57,6 +59,7 @@ class Mapper {
   MapState& active() { return parts_.back().map; }
   FrameResult begin(ScanFeatures scan, const std::optional<Eigen::Isometry3d>& odom_from_body);
   void addKeyframe(ScanFeatures scan, const MatchResult& match);
+  void splitParts();
   void follow(const ScanFeatures& scan, const Eigen::Isometry3d& map_from_body);
 
   MapperParams params_;

@@ -1,0 +1,201 @@
+// SPDX-FileCopyrightText: 2026 The opp-mapping authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "opp/mapping/loop/split_map.h"
+
+#include "opp/graph/union_find.h"
+#include "opp/mapping/loop/keyframe_graph.h"
+
+#include "registration/observability.h"
+
+#include <algorithm>
+#include <limits>
+#include <utility>
+
+namespace opp::mapping {
+namespace {
+
+using Index = std::size_t;
+
+/// New id of each old one; −1: left out.
+using Renumbering = std::vector<int>;
+
+/// Numbers those of `count` things that `kept` approves of.
+template <typename Kept>
+Renumbering renumber(Index count, Kept kept) {
+  Renumbering result(count, -1);
+  int next = 0;
+  for (Index k = 0; k < count; ++k) {
+    if (kept(k)) result[k] = next++;
+  }
+  return result;
+}
+
+template <std::size_t N>
+bool allKept(const std::array<int, N>& ids, const Renumbering& renumbered) {
+  return std::all_of(ids.begin(), ids.end(), [&](int id) { return renumbered[Index(id)] >= 0; });
+}
+
+template <std::size_t N>
+std::array<int, N> renumberedIds(std::array<int, N> ids, const Renumbering& renumbered) {
+  for (int& id : ids) id = renumbered[Index(id)];
+  return ids;
+}
+
+std::vector<PrimitiveObservation> observationsOf(const std::vector<PrimitiveObservation>& all,
+                                                 const Renumbering& keyframes) {
+  std::vector<PrimitiveObservation> result;
+  for (PrimitiveObservation o : all) {
+    o.keyframe = keyframes[Index(o.keyframe)];
+    if (o.keyframe >= 0) result.push_back(o);
+  }
+  return result;
+}
+
+LandmarkMap landmarksOf(const LandmarkMap& all, const Renumbering& keyframes,
+                        const Renumbering& planes) {
+  LandmarkMap result;
+  for (Index p = 0; p < all.planes.size(); ++p) {
+    if (planes[p] < 0) continue;
+    result.planes.push_back(
+        {all.planes[p].plane_in_map, observationsOf(all.planes[p].observations, keyframes)});
+  }
+  for (const CornerLandmark& corner : all.corners) {
+    auto observations = observationsOf(corner.observations, keyframes);
+    if (observations.empty() || !allKept(corner.planes, planes)) continue;
+    result.corners.push_back(
+        {renumberedIds(corner.planes, planes), corner.position_in_map, std::move(observations)});
+  }
+  return result;
+}
+
+MapFactors factorsOf(const MapFactors& all, const Renumbering& keyframes,
+                     const Renumbering& planes) {
+  MapFactors result;
+  for (PlaneFactor f : all.planes) {
+    f.keyframe = keyframes[Index(f.keyframe)];
+    if (f.keyframe < 0) continue;
+    f.landmark = planes[Index(f.landmark)];
+    result.planes.push_back(f);
+  }
+  for (RelativePoseFactor f : all.relative_poses) {
+    f.first = keyframes[Index(f.first)];
+    f.second = keyframes[Index(f.second)];
+    if (f.first >= 0 && f.second >= 0) result.relative_poses.push_back(f);
+  }
+  for (const OrthogonalityFactor& f : all.orthogonalities) {
+    if (allKept(f.landmarks, planes))
+      result.orthogonalities.push_back({renumberedIds(f.landmarks, planes)});
+  }
+  for (const ParallelismFactor& f : all.parallelisms) {
+    if (allKept(f.landmarks, planes))
+      result.parallelisms.push_back({renumberedIds(f.landmarks, planes)});
+  }
+  return result;
+}
+
+/// Moves the kept keyframes out of `map`; the rest of it is copied.
+MapState takeKeyframes(const Renumbering& keyframes, MapState& map) {
+  const Renumbering planes = renumber(map.landmarks.planes.size(), [&](Index p) {
+    const auto& seen = map.landmarks.planes[p].observations;
+    return std::any_of(seen.begin(), seen.end(), [&](const PrimitiveObservation& o) {
+      return keyframes[Index(o.keyframe)] >= 0;
+    });
+  });
+  MapState part;
+  part.landmarks = landmarksOf(map.landmarks, keyframes, planes);
+  part.factors = factorsOf(map.factors, keyframes, planes);
+  for (Index k = 0; k < map.keyframes.size(); ++k) {
+    if (keyframes[k] < 0) continue;
+    part.keyframes.push_back(std::move(map.keyframes[k]));
+    for (int& landmark : part.keyframes.back().landmark_of_plane) {
+      if (landmark >= 0) landmark = planes[Index(landmark)];
+    }
+  }
+  for (const KeyframeLink& link : map.links) {
+    const int first = keyframes[Index(link.first)], second = keyframes[Index(link.second)];
+    if (first >= 0 && second >= 0) part.links.push_back({first, second, link.variance});
+  }
+  for (LocalizedScan scan : map.scans) {
+    scan.keyframe = keyframes[Index(scan.keyframe)];
+    if (scan.keyframe >= 0) part.scans.push_back(scan);
+  }
+  return part;
+}
+
+/// Moves the point whose translation v is in (ω, v) by `offset`.
+Matrix6d movedBy(const Eigen::Vector3d& offset) {
+  Matrix6d moved = Matrix6d::Identity();
+  moved.bottomLeftCorner<3, 3>() << 0.0, offset.z(), -offset.y(),  //
+      -offset.z(), 0.0, offset.x(),                                //
+      offset.y(), -offset.x(), 0.0;
+  return moved;
+}
+
+/// What all relative poses between two sets of keyframes together leave open of how the one moves
+/// against the other, in the map's axes at the second keyframe of the last of them.
+double varianceBetween(const MapState& map, UnionFind& tied, Index root_a, Index root_b) {
+  Matrix6d information = Matrix6d::Zero();
+  const Keyframe* at = nullptr;
+  for (const RelativePoseFactor& f : map.factors.relative_poses) {
+    const Index a = tied.root(Index(f.first)), b = tied.root(Index(f.second));
+    if (!(a == root_a && b == root_b) && !(a == root_b && b == root_a)) continue;
+    const Keyframe& second = map.keyframes[Index(f.second)];
+    if (at != nullptr) {
+      const Matrix6d moved =
+          movedBy(at->map_from_body.translation() - second.map_from_body.translation());
+      information = (moved.transpose() * information * moved).eval();
+    }
+    at = &second;
+    Matrix6d first_from_map = Matrix6d::Zero();
+    first_from_map.topLeftCorner<3, 3>() = first_from_map.bottomRightCorner<3, 3>() =
+        map.keyframes[Index(f.first)].map_from_body.linear().transpose();
+    information += first_from_map.transpose() * f.information * first_from_map;
+  }
+  return at == nullptr ? std::numeric_limits<double>::infinity()
+                       : viewVariance(covarianceOf(information), *at);
+}
+
+/// Sets of keyframes that links tie well, or several loose ties that leave open different
+/// directions.
+UnionFind tiedSets(const MapState& map, double max_variance) {
+  UnionFind tied(map.keyframes.size());
+  for (const KeyframeLink& link : map.links) {
+    if (link.variance <= max_variance) tied.join(Index(link.first), Index(link.second));
+  }
+  for (bool joined = true; joined;) {
+    joined = false;
+    for (const RelativePoseFactor& f : map.factors.relative_poses) {
+      const Index a = tied.root(Index(f.first)), b = tied.root(Index(f.second));
+      if (a == b || varianceBetween(map, tied, a, b) > max_variance) continue;
+      tied.join(a, b);
+      joined = true;
+    }
+  }
+  return tied;
+}
+
+}  // namespace
+
+std::vector<MapState> splitMap(MapState&& map, double max_variance) {
+  UnionFind tied = tiedSets(map, max_variance);
+  std::vector<MapState> parts;
+  std::vector<bool> taken(map.keyframes.size(), false);
+  for (Index first = 0; first < taken.size(); ++first) {
+    if (taken[first]) continue;
+    const Renumbering keyframes =
+        renumber(taken.size(), [&](Index k) { return tied.root(k) == tied.root(first); });
+    for (Index k = 0; k < taken.size(); ++k) taken[k] = taken[k] || keyframes[k] >= 0;
+    if (first == 0 && std::all_of(taken.begin(), taken.end(), [](bool t) { return t; })) {
+      parts.push_back(std::move(map));
+      return parts;
+    }
+    parts.push_back(takeKeyframes(keyframes, map));
+  }
+  const auto largest = std::max_element(
+      parts.begin(), parts.end(),
+      [](const MapState& a, const MapState& b) { return a.scans.size() < b.scans.size(); });
+  if (largest != parts.end()) largest->loop_closures = map.loop_closures;
+  return parts;
+}
+
+}  // namespace opp::mapping
