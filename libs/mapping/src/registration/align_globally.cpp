@@ -57,7 +57,8 @@ class Aligner {
       c.pose = refinePose(target_, source_, c.pose.target_from_source, params_);
     }
     verify(candidates, judge_.refinedSlack());
-    candidates = distinct(std::move(candidates), candidates.size());
+    const std::size_t all = candidates.size();
+    candidates = distinct(std::move(candidates), all);
     GlobalAlignment answer = judge_.judge(candidates);
     if (answer.outcome == AlignmentOutcome::kAligned && !confirmed(candidates.front(), answer)) {
       answer.outcome = AlignmentOutcome::kUnconfirmed;

@@ -2,8 +2,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "opp/mapping/registration/corner_icp.h"
 
+#include <Eigen/Eigenvalues>
 #include <Eigen/SVD>
 
+#include <algorithm>
 #include <cmath>
 
 namespace opp::mapping {
@@ -35,11 +37,11 @@ CornerConstraint cornerConstraint(const std::vector<CornerPair>& corners,
   target.colwise() -= middle_t;
   source.colwise() -= middle_s;
 
-  const Eigen::JacobiSVD<Eigen::Matrix3Xd> spread(target, Eigen::ComputeThinU);
-  const auto deviation = [&](Eigen::Index k) {
-    return k < spread.singularValues().size()
-               ? spread.singularValues()[k] / std::sqrt(static_cast<double>(count))
-               : 0.0;
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> spread(
+      Eigen::Matrix3d(target * target.transpose() / static_cast<double>(count)));
+  // Standard deviation along the k-th widest direction.
+  const auto deviation = [&](int k) {
+    return std::sqrt(std::max(spread.eigenvalues()[2 - k], 0.0));
   };
   Eigen::Matrix3d rotation = result.target_from_source.linear();
   if (deviation(1) >= collinear_spread) {
@@ -47,7 +49,7 @@ CornerConstraint cornerConstraint(const std::vector<CornerPair>& corners,
     rotation = kabsch(target, source);
   } else if (deviation(0) >= collinear_spread) {
     result.dof = 1;
-    result.axis_in_target = spread.matrixU().col(0);
+    result.axis_in_target = spread.eigenvectors().col(2);
     // The source's direction of the same line, with the sense that the correspondences give.
     const Eigen::Vector3d along = source * (target.transpose() * result.axis_in_target);
     rotation = Eigen::Quaterniond::FromTwoVectors(rotation * along, result.axis_in_target)

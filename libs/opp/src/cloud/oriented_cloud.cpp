@@ -91,6 +91,7 @@ OrientedCloud fromUnorganized(const PointCloud& cloud, const SensorModel& sensor
   }
   if (points.empty()) return {};
   const double edge = spacingForCount(points, patch_count, 0.0);
+  if (edge <= 0.0) return {};  // all points are one
   const Patches patches = makeVoxelPatches(points, edge);
   return fromPatches(patches, *nearestPatches(patches), cloud, sensor, params);
 }
