@@ -128,10 +128,10 @@ TEST(MotionModel, TellsWhatMotionKnowsSinceAKeyframe) {
   model.start({0.0, still}, still);
   Eigen::Isometry3d odometry = still;
   odometry.translation().x() = 2.0;
-  // Odometry: a ratio of the way. Without: accelerations over the time.
+  // Odometry: a ratio of the way. Without: any typical velocity, and accelerations over the time.
   const double of_odometry = std::hypot(params.odometry_noise_translation, 2.0 * 0.05);
   EXPECT_NEAR(model.informationSinceAnchor(1.0, odometry)(3, 3), std::pow(of_odometry, -2), 1e-9);
-  const double of_velocity = params.acceleration * std::sqrt(0.1 / 3.0);
+  const double of_velocity = std::hypot(params.speed, params.acceleration * std::sqrt(0.1 / 3.0));
   EXPECT_NEAR(model.informationSinceAnchor(1.0, std::nullopt)(3, 3), std::pow(of_velocity, -2),
               1e-9);
 }

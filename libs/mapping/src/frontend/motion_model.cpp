@@ -140,12 +140,17 @@ PosePrior MotionModel::lastPose(double timestamp) const {
 Matrix6d MotionModel::informationSinceAnchor(
     double timestamp, const std::optional<Eigen::Isometry3d>& odom_from_body) const {
   const double time = std::max(timestamp - anchor_.timestamp, kMinTimeStep);
-  Vector6d variance = agility() * time * time * time / 3.0;
-  if (odom_from_body && anchor_.odom_from_body)
-    variance = odometryVariance(anchor_.odom_from_body->inverse() * *odom_from_body);
-  return variance.cwiseInverse().asDiagonal();
+  if (odom_from_body && anchor_.odom_from_body) {
+    const Vector6d variance = odometryVariance(anchor_.odom_from_body->inverse() * *odom_from_body);
+    return variance.cwiseInverse().asDiagonal();
+  }
+  Matrix6d covariance = time * time * anchor_.rate_covariance;
+  covariance.diagonal() += agility() * time * time * time / 3.0;
+  return inverse(covariance);
 }
 
-void MotionModel::setAnchor() { anchor_ = {timestamp_, last_odom_from_body_}; }
+void MotionModel::setAnchor() {
+  anchor_ = {timestamp_, last_odom_from_body_, last_.covariance.bottomRightCorner<6, 6>()};
+}
 
 }  // namespace opp::mapping

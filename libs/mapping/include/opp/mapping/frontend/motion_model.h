@@ -37,7 +37,8 @@ class MotionModel {
   PosePrior lastPose(double timestamp) const;
 
   /// What motion alone tells of the pose at `timestamp` relative to the one of the last call of
-  /// `setAnchor`: errors of odometry, or of velocity, over the way between.
+  /// `setAnchor`: errors of odometry over the way between, or of the velocity then and of its
+  /// changes since.
   Matrix6d informationSinceAnchor(double timestamp,
                                   const std::optional<Eigen::Isometry3d>& odom_from_body) const;
   /// Remembers the last known pose, which became a keyframe.
@@ -56,6 +57,7 @@ class MotionModel {
   struct Anchor {
     double timestamp = 0.0;
     std::optional<Eigen::Isometry3d> odom_from_body;
+    Matrix6d rate_covariance = Matrix6d::Zero();
   };
 
   State stateAt(double timestamp, const std::optional<Eigen::Isometry3d>& odom_from_body) const;
