@@ -67,6 +67,42 @@ TEST(MapJoiner, JoinsTwoSessionsOfOneRoomWithoutAGuess) {
   EXPECT_GE(joined, 4);
 }
 
+/// A map of the scans from `first` on, as part `id`.
+MapPart partOf(const test::Rectangles& scene, int id, int first) {
+  Mapper mapper{MapperParams()};
+  for (int step = first; step < first + 16; ++step) mapper.add(scanAt(scene, step), std::nullopt);
+  MapPart part(id, LoopParams());
+  part.map = mapper.map();
+  for (const Keyframe& keyframe : part.map.keyframes)
+    part.index.add(keyframe.features.primitives_in_body);
+  return part;
+}
+
+TEST(MapJoiner, BelievesMotionThatDeniesAJoin) {
+  const test::Rectangles room = test::furnishedRoom(1);
+  const std::vector<MapPart> parts = {partOf(room, 0, 0), partOf(room, 1, 40)};
+  ExpectedBeginning beginning;
+  beginning.last_scan = 15;
+  beginning.first_scan = 40;
+  beginning.information = Matrix6d::Identity() / 0.04;
+  for (const double aside : {0.0, 4.0}) {
+    beginning.last_from_first = poseAt(15).inverse() * poseAt(40);
+    beginning.last_from_first.translation().x() += aside;
+    std::vector<MapPart> some = parts;
+    some[1].beginnings = {beginning};
+    MapJoiner(MapperParams()).joinAll(some);
+    EXPECT_EQ(some.size(), aside == 0.0 ? 1U : 2U) << aside;
+  }
+}
+
+TEST(MapJoiner, DoesNotCompareWhatWasTakenAsunder) {
+  const test::Rectangles room = test::furnishedRoom(1);
+  std::vector<MapPart> parts = {partOf(room, 0, 0), partOf(room, 1, 40)};
+  parts[1].origins = parts[0].origins;
+  MapJoiner(MapperParams()).joinAll(parts);
+  EXPECT_EQ(parts.size(), 2U);
+}
+
 TEST(MapJoiner, LeavesDifferentRoomsApart) {
   for (std::uint64_t room = 1; room <= 5; ++room) {
     const Mapper mapper = mapTwice(test::furnishedRoom(room), test::furnishedRoom(room + 20), 12);

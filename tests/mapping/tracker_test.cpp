@@ -217,7 +217,6 @@ TEST(Tracker, FollowsABodyPastABareWallAndFindsTheWayOn) {
     if (result.outcome == TrackOutcome::kUnobserved) {
       ++unobserved;
       EXPECT_TRUE(bare) << "step " << step;
-      EXPECT_FALSE(result.wants_keyframe) << "step " << step;
       // What the wall shows is known all the time.
       EXPECT_NEAR(error[3], 0.0, 3e-3) << "step " << step;
       EXPECT_LT(error.segment<2>(1).norm(), 3e-3) << "step " << step;

@@ -45,6 +45,13 @@ void Tracker::start(const StampedPose& pose,
                     const std::optional<Eigen::Isometry3d>& odom_from_body) {
   motion_.start(pose, odom_from_body);
   follows_ = true;
+  past_structure_ = false;
+}
+
+std::optional<PosePrior> Tracker::expected(
+    double timestamp, const std::optional<Eigen::Isometry3d>& odom_from_body) const {
+  if (!past_structure_) return std::nullopt;
+  return motion_.predict(timestamp, odom_from_body);
 }
 
 namespace {
@@ -94,12 +101,12 @@ TrackResult Tracker::track(const ScanFeatures& scan,
   result = localize(scan, predicted, moved, newest);
   follows_ = result.localized();
   if (!result.localized() && result.outcome != TrackOutcome::kUnobserved) return result;
+  past_structure_ = !result.localized();
   // Between keyframes, motion ties what neither planes nor points do.
   result.match.point_information += motion_.informationSinceAnchor(scan.timestamp, odom_from_body);
   motion_.update({scan.timestamp, result.match.map_from_body}, odom_from_body,
                  result.match.information);
-  result.wants_keyframe =
-      result.localized() ? wantsKeyframe(result.match, newest) : !convincing(result.match);
+  result.wants_keyframe = wantsKeyframe(result.match, newest);
   return result;
 }
 

@@ -23,6 +23,47 @@ constexpr int kComparedKeyframes = 12;
 /// Keyframes of a part that look for their places in the end, about.
 constexpr int kClaimants = 40;
 
+const LocalizedScan* scanOf(const MapState& map, int session, std::size_t scan_index) {
+  const auto found = std::find_if(map.scans.begin(), map.scans.end(), [&](const LocalizedScan& s) {
+    return s.session == session && s.scan_index == scan_index;
+  });
+  return found == map.scans.end() ? nullptr : &*found;
+}
+
+Eigen::Isometry3d poseOf(const MapState& map, const LocalizedScan& scan) {
+  return map.keyframes[Index(scan.keyframe)].map_from_body * scan.keyframe_from_body;
+}
+
+/// Whether motion between the end of one part and the beginning of the other allows the pose.
+bool expectedBy(const ExpectedBeginning& beginning, const MapState& a, const MapState& b,
+                const Eigen::Isometry3d& a_from_b) {
+  // The 99.9 % point of χ² with six degrees of freedom.
+  constexpr double kPossible = 22.5;
+  const LocalizedScan* last = scanOf(a, beginning.session, beginning.last_scan);
+  const LocalizedScan* first = scanOf(b, beginning.session, beginning.first_scan);
+  if (last == nullptr || first == nullptr) return true;
+  const Eigen::Isometry3d last_from_first =
+      poseOf(a, *last).inverse() * a_from_b * poseOf(b, *first);
+  const Vector6d error = difference(beginning.last_from_first, last_from_first);
+  return error.dot(beginning.information * error) <= kPossible;
+}
+
+/// The same for all beginnings of the two parts.
+bool expectedToBe(const MapPart& a, const MapPart& b, const Eigen::Isometry3d& a_from_b) {
+  const auto agree = [](const MapPart& earlier, const MapPart& later,
+                        const Eigen::Isometry3d& earlier_from_later) {
+    return std::all_of(later.beginnings.begin(), later.beginnings.end(),
+                       [&](const auto& beginning) {
+                         return expectedBy(beginning, earlier.map, later.map, earlier_from_later);
+                       });
+  };
+  return agree(a, b, a_from_b) && agree(b, a, a_from_b.inverse());
+}
+
+bool haveCommon(const std::set<int>& a, const std::set<int>& b) {
+  return std::any_of(a.begin(), a.end(), [&](int id) { return b.count(id) > 0; });
+}
+
 /// Whether the body can have got from the one part to the other: within a session it moves at most
 /// at some times its typical speed.
 bool reachable(const MapState& a, const MapState& b, const Eigen::Isometry3d& a_from_b,
@@ -35,10 +76,8 @@ bool reachable(const MapState& a, const MapState& b, const Eigen::Isometry3d& a_
     }
     if (last == nullptr) continue;
     const double seconds = first.timestamp - last->timestamp;
-    const Eigen::Vector3d was =
-        a.keyframes[Index(last->keyframe)].map_from_body * last->keyframe_from_body.translation();
-    const Eigen::Vector3d is = a_from_b * (b.keyframes[Index(first.keyframe)].map_from_body *
-                                           first.keyframe_from_body.translation());
+    const Eigen::Vector3d was = poseOf(a, *last).translation();
+    const Eigen::Vector3d is = a_from_b * poseOf(b, first).translation();
     return (is - was).norm() <=
            params.loop.search_distance + kSigmas * params.frontend.speed * seconds;
   }
@@ -92,7 +131,8 @@ std::vector<MapJoiner::Candidate> MapJoiner::candidates(const std::vector<MapPar
                                                         const Primitives& primitives) const {
   std::vector<Candidate> ranked;
   for (Index p = 0; p < parts.size(); ++p) {
-    if (parts[p].id >= parts[claimant].id) continue;
+    if (parts[p].id >= parts[claimant].id || haveCommon(parts[p].origins, parts[claimant].origins))
+      continue;
     const std::vector<double> likeness = parts[p].index.likeness(primitives);
     for (Index k = 0; k < likeness.size(); ++k) {
       if (likeness[k] > 0.0) ranked.push_back({likeness[k], p, static_cast<int>(k)});
@@ -127,7 +167,8 @@ void MapJoiner::claim(const std::vector<MapPart>& parts, Index claimant, int key
     if (!match) continue;
     PlaceClaim claim = claimOf(other.map, *match, own.map, keyframe);
     claim.clarity = match->clarity;
-    if (reachable(other.map, own.map, claim.map_a_from_map_b, params_))
+    if (reachable(other.map, own.map, claim.map_a_from_map_b, params_) &&
+        expectedToBe(other, own, claim.map_a_from_map_b))
       pool(other.id, own.id).add(claim);
   }
 }
@@ -153,6 +194,8 @@ bool MapJoiner::joinAgreed(std::vector<MapPart>& parts, Index claimant) {
     settleMap(host.map, 1, params_);
     for (Index k = Index(first); k < host.map.keyframes.size(); ++k)
       host.index.add(host.map.keyframes[k].features.primitives_in_body);
+    host.origins.insert(guest.origins.begin(), guest.origins.end());
+    host.beginnings.insert(host.beginnings.end(), guest.beginnings.begin(), guest.beginnings.end());
     MapPart joined = std::move(host);
     parts.erase(parts.begin() + static_cast<std::ptrdiff_t>(std::max(p, claimant)));
     parts.erase(parts.begin() + static_cast<std::ptrdiff_t>(std::min(p, claimant)));

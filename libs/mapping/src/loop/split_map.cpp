@@ -5,10 +5,9 @@
 #include "opp/graph/union_find.h"
 #include "opp/mapping/loop/keyframe_graph.h"
 
-#include "registration/observability.h"
+#include <Eigen/Cholesky>
 
 #include <algorithm>
-#include <limits>
 #include <utility>
 
 namespace opp::mapping {
@@ -122,7 +121,7 @@ MapState takeKeyframes(const Renumbering& keyframes, MapState& map) {
   return part;
 }
 
-/// Moves the point whose translation v is in (ω, v) by `offset`.
+/// (ω, v) of a body whose v is given at one point, with v at another that is `offset` away.
 Matrix6d movedBy(const Eigen::Vector3d& offset) {
   Matrix6d moved = Matrix6d::Identity();
   moved.bottomLeftCorner<3, 3>() << 0.0, offset.z(), -offset.y(),  //
@@ -131,53 +130,98 @@ Matrix6d movedBy(const Eigen::Vector3d& offset) {
   return moved;
 }
 
-/// What all relative poses between two sets of keyframes together leave open of how the one moves
-/// against the other, in the map's axes at the second keyframe of the last of them.
-double varianceBetween(const MapState& map, UnionFind& tied, Index root_a, Index root_b) {
-  Matrix6d information = Matrix6d::Zero();
-  const Keyframe* at = nullptr;
-  for (const RelativePoseFactor& f : map.factors.relative_poses) {
-    const Index a = tied.root(Index(f.first)), b = tied.root(Index(f.second));
-    if (!(a == root_a && b == root_b) && !(a == root_b && b == root_a)) continue;
-    const Keyframe& second = map.keyframes[Index(f.second)];
-    if (at != nullptr) {
-      const Matrix6d moved =
-          movedBy(at->map_from_body.translation() - second.map_from_body.translation());
-      information = (moved.transpose() * information * moved).eval();
+/// Sets of keyframes that do not move against each other, and what ties the sets.
+class TiedSets {
+ public:
+  TiedSets(const MapState& map, double max_variance)
+      : map_(map), max_variance_(max_variance), sets_(map.keyframes.size()) {
+    for (const KeyframeLink& link : map.links) {
+      if (link.variance <= max_variance) sets_.join(Index(link.first), Index(link.second));
     }
-    at = &second;
+  }
+
+  /// Joins sets whose ties, all taken together, fix them against a larger one.
+  UnionFind joined() {
+    std::vector<Index> open = roots();
+    while (open.size() > 1) {
+      const auto largest = std::max_element(
+          open.begin(), open.end(), [&](Index a, Index b) { return sizeOf(a) < sizeOf(b); });
+      std::rotate(open.begin(), largest, largest + 1);
+      const Eigen::MatrixXd covariance = covarianceOfOthers(open);
+      std::vector<Index> rest;
+      for (Index k = 1; k < open.size(); ++k) {
+        const auto at = static_cast<Eigen::Index>(6 * (k - 1));
+        const Keyframe& keyframe = map_.keyframes[open[k]];
+        const Matrix6d moved = movedBy(keyframe.map_from_body.translation());
+        const Matrix6d here = moved * covariance.block<6, 6>(at, at) * moved.transpose();
+        if (viewVariance(here, keyframe) <= max_variance_) {
+          sets_.join(open[0], open[k]);
+        } else {
+          rest.push_back(open[k]);
+        }
+      }
+      open = std::move(rest);
+    }
+    return sets_;
+  }
+
+ private:
+  std::vector<Index> roots() {
+    std::vector<Index> result;
+    for (Index k = 0; k < map_.keyframes.size(); ++k) {
+      if (sets_.root(k) == k) result.push_back(k);
+    }
+    return result;
+  }
+
+  std::ptrdiff_t sizeOf(Index root) {
+    Index count = 0;
+    for (Index k = 0; k < map_.keyframes.size(); ++k) count += sets_.root(k) == root ? 1 : 0;
+    return static_cast<std::ptrdiff_t>(count);
+  }
+
+  /// Of (ω, v at the map's origin) of all sets but the first, which stays where it is.
+  Eigen::MatrixXd covarianceOfOthers(const std::vector<Index>& roots) {
+    // What no tie holds is known to 100 rad and 100 m, as in `covarianceOf`.
+    constexpr double kLeast = 1e-4;
+    const auto size = static_cast<Eigen::Index>(6 * (roots.size() - 1));
+    Eigen::MatrixXd information = kLeast * Eigen::MatrixXd::Identity(size, size);
+    const auto rowOf = [&](int keyframe) {
+      const auto found = std::find(roots.begin(), roots.end(), sets_.root(Index(keyframe)));
+      return 6 * static_cast<Eigen::Index>(found - roots.begin() - 1);
+    };
+    for (const RelativePoseFactor& f : map_.factors.relative_poses) {
+      const Eigen::Index a = rowOf(f.first), b = rowOf(f.second);
+      if (a == b || a >= size || b >= size) continue;
+      const Matrix6d tie = informationOf(f);
+      if (a >= 0) information.block<6, 6>(a, a) += tie;
+      if (b >= 0) information.block<6, 6>(b, b) += tie;
+      if (a < 0 || b < 0) continue;
+      information.block<6, 6>(a, b) -= tie;
+      information.block<6, 6>(b, a) -= tie;
+    }
+    return information.ldlt().solve(Eigen::MatrixXd::Identity(size, size));
+  }
+
+  /// Of the factor's (ω, v) in the map's axes, v at the map's origin.
+  Matrix6d informationOf(const RelativePoseFactor& f) const {
     Matrix6d first_from_map = Matrix6d::Zero();
     first_from_map.topLeftCorner<3, 3>() = first_from_map.bottomRightCorner<3, 3>() =
-        map.keyframes[Index(f.first)].map_from_body.linear().transpose();
-    information += first_from_map.transpose() * f.information * first_from_map;
+        map_.keyframes[Index(f.first)].map_from_body.linear().transpose();
+    const Matrix6d at_second =
+        first_from_map * movedBy(map_.keyframes[Index(f.second)].map_from_body.translation());
+    return at_second.transpose() * f.information * at_second;
   }
-  return at == nullptr ? std::numeric_limits<double>::infinity()
-                       : viewVariance(covarianceOf(information), *at);
-}
 
-/// Sets of keyframes that links tie well, or several loose ties that leave open different
-/// directions.
-UnionFind tiedSets(const MapState& map, double max_variance) {
-  UnionFind tied(map.keyframes.size());
-  for (const KeyframeLink& link : map.links) {
-    if (link.variance <= max_variance) tied.join(Index(link.first), Index(link.second));
-  }
-  for (bool joined = true; joined;) {
-    joined = false;
-    for (const RelativePoseFactor& f : map.factors.relative_poses) {
-      const Index a = tied.root(Index(f.first)), b = tied.root(Index(f.second));
-      if (a == b || varianceBetween(map, tied, a, b) > max_variance) continue;
-      tied.join(a, b);
-      joined = true;
-    }
-  }
-  return tied;
-}
+  const MapState& map_;
+  double max_variance_;
+  UnionFind sets_;
+};
 
 }  // namespace
 
 std::vector<MapState> splitMap(MapState&& map, double max_variance) {
-  UnionFind tied = tiedSets(map, max_variance);
+  UnionFind tied = TiedSets(map, max_variance).joined();
   std::vector<MapState> parts;
   std::vector<bool> taken(map.keyframes.size(), false);
   for (Index first = 0; first < taken.size(); ++first) {

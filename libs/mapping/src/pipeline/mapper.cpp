@@ -66,7 +66,12 @@ FrameResult Mapper::begin(ScanFeatures scan,
   // The very first scan of a session founds a map whatever it shows: there is nothing to wait for.
   if (scan.cloud_in_body.size() == 0) return {};
   if (continues_ && !canFoundMap(scan.cloud_in_body, params_.loop.min_normal_spread)) return {};
-  parts_.emplace_back(next_part_++, params_.loop);
+  MapPart part(next_part_++, params_.loop);
+  if (continues_) {
+    if (const auto beginning = expectedBeginning(scan, odom_from_body))
+      part.beginnings.push_back(*beginning);
+  }
+  parts_.push_back(std::move(part));
   MatchResult match;
   if (parts_.size() == 1) match.map_from_body = initial_pose_;
   continues_ = true;
@@ -76,6 +81,21 @@ FrameResult Mapper::begin(ScanFeatures scan,
   tracker_.start({scan.timestamp, match.map_from_body}, odom_from_body);
   addKeyframe(std::move(scan), match);
   return {true, true, 1.0, 0.0};
+}
+
+std::optional<ExpectedBeginning> Mapper::expectedBeginning(
+    const ScanFeatures& scan, const std::optional<Eigen::Isometry3d>& odom_from_body) const {
+  const auto expected = tracker_.expected(scan.timestamp, odom_from_body);
+  const MapState& map = parts_.back().map;
+  if (!expected || map.scans.empty()) return std::nullopt;
+  const LocalizedScan& last = map.scans.back();
+  const Eigen::Isometry3d last_from_map = poseOf(map, last).inverse();
+  Matrix6d map_from_last = Matrix6d::Zero();
+  map_from_last.topLeftCorner<3, 3>() = map_from_last.bottomRightCorner<3, 3>() =
+      last_from_map.linear().transpose();
+  return ExpectedBeginning{last.session, last.scan_index, scan.scan_index,
+                           last_from_map * expected->map_from_body,
+                           map_from_last.transpose() * expected->information * map_from_last};
 }
 
 void Mapper::addKeyframe(ScanFeatures scan, const MatchResult& match) {
@@ -109,6 +129,8 @@ void Mapper::splitParts() {
   for (MapPart& part : parts_) {
     for (MapState& map : splitMap(std::move(part.map), max_drift * max_drift)) {
       parts.emplace_back(next_part_++, params_.loop);
+      parts.back().origins = part.origins;
+      parts.back().beginnings = part.beginnings;
       for (const Keyframe& keyframe : map.keyframes)
         parts.back().index.add(keyframe.features.primitives_in_body);
       parts.back().map = std::move(map);

@@ -23,7 +23,7 @@ struct FrontendParams {
   double doubtful_overlap = 0.6;
   double max_conflict = 0.2;
   double max_jump = 6.0;
-  double max_drift_translation = 0.2;
+  double max_drift_translation = 0.15;
   double max_drift_rotation = degToRad(3.0);
   double max_gap = 1.0;
   double keyframe_overlap = 0.8;

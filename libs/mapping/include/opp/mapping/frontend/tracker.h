@@ -32,9 +32,7 @@ std::string_view describe(TrackOutcome outcome);
 /// What the tracker makes of one scan.
 struct TrackResult {
   TrackOutcome outcome = TrackOutcome::kNoMap;
-  /// The map would gain by this scan, if it is localized; if a direction is open, that what it is
-  /// followed by goes out of sight.
-  bool wants_keyframe = false;
+  bool wants_keyframe = false;  ///< the map would gain by this scan; false if not followed
   MatchResult match;  ///< of the best attempt, also if it was not good enough
 
   bool localized() const { return outcome == TrackOutcome::kLocalized; }
@@ -57,6 +55,11 @@ class Tracker {
   /// direction open (kUnobserved) still tells how the body moved in the others.
   TrackResult track(const ScanFeatures& scan,
                     const std::optional<Eigen::Isometry3d>& odom_from_body, const MapState& map);
+
+  /// Where the body should be at `timestamp`, if it was lost because there was too little to see: a
+  /// body that was carried off is not where motion expects it.
+  std::optional<PosePrior> expected(double timestamp,
+                                    const std::optional<Eigen::Isometry3d>& odom_from_body) const;
 
   /// Scans are registered against this from now on (see `localMapOf`). To be called after keyframes
   /// or landmarks changed.
@@ -86,7 +89,8 @@ class Tracker {
   MapperParams params_;
   MotionModel motion_;
   std::optional<LocalMap> local_map_;
-  bool follows_ = true;  ///< the last scan was localized
+  bool follows_ = true;          ///< the last scan was localized
+  bool past_structure_ = false;  ///< the last scan that was followed left a direction open
 };
 
 /// Of several poses that explain a scan alike, the one that motion speaks for by odds of 100 to 1

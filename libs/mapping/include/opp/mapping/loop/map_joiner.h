@@ -8,15 +8,31 @@
 #include "opp/mapping/loop/constellation.h"
 
 #include <map>
+#include <set>
 #include <utility>
 #include <vector>
 
 namespace opp::mapping {
 
+/// What motion says of how a part begins: the body's pose at its first scan relative to that at the
+/// last scan before, of another part.
+struct ExpectedBeginning {
+  int session = 0;
+  std::size_t last_scan = 0;   ///< ScanFeatures::scan_index
+  std::size_t first_scan = 0;  ///< the same
+  Eigen::Isometry3d last_from_first = Eigen::Isometry3d::Identity();
+  Matrix6d information = Matrix6d::Zero();  ///< of (ω, v) in the axes of the last body frame
+};
+
 /// A map that grew on its own: a session, or what came after the body was lost.
 struct MapPart {
-  explicit MapPart(int part_id, const LoopParams& params) : id(part_id), index(params.word_width) {}
+  explicit MapPart(int part_id, const LoopParams& params)
+      : id(part_id), origins({part_id}), index(params.word_width) {}
   int id;  ///< in the order of their beginnings; stays when others join it
+  /// Ids of the maps that its keyframes grew in. Two parts of one map were compared as it grew,
+  /// with more known than is now: they are not compared again.
+  std::set<int> origins;
+  std::vector<ExpectedBeginning> beginnings;
   MapState map;
   ConstellationIndex index;  ///< of all keyframes
 };

@@ -13,7 +13,7 @@ namespace opp::mapping {
 /// loose ties hold if together they leave no direction open. All stay in the map's frame;
 /// keyframes, landmarks and scans keep their order. A landmark that several see is in each of them,
 /// with the observations made there; factors between them are gone. The one with most scans keeps
-/// the count of loop closures. O(size of the map · parts).
+/// the count of loop closures. O(size of the map · parts + loose ties³).
 std::vector<MapState> splitMap(MapState&& map, double max_variance);
 
 }  // namespace opp::mapping

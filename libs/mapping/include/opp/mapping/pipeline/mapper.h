@@ -58,6 +58,8 @@ class Mapper {
  private:
   MapState& active() { return parts_.back().map; }
   FrameResult begin(ScanFeatures scan, const std::optional<Eigen::Isometry3d>& odom_from_body);
+  std::optional<ExpectedBeginning> expectedBeginning(
+      const ScanFeatures& scan, const std::optional<Eigen::Isometry3d>& odom_from_body) const;
   void addKeyframe(ScanFeatures scan, const MatchResult& match);
   void splitParts();
   void follow(const ScanFeatures& scan, const Eigen::Isometry3d& map_from_body);
