@@ -67,9 +67,9 @@ Detection detect(opp::mapping::Scan scan, const MapperParams& params, int thread
   opp::StageTimings seconds;
   const auto start = std::chrono::steady_clock::now();
   const auto& primitive_params = params.primitives;
-  opp::OrientedCloud samples = opp::makeOrientedCloud(scan.cloud_in_body, primitive_params.sensor,
-                                                      primitive_params.sampling, &seconds);
-  opp::Primitives primitives = opp::detectPrimitives(samples, primitive_params, threads, &seconds);
+  opp::ScanSurface surface = opp::makeScanSurface(scan.cloud_in_body, primitive_params.sensor,
+                                                  primitive_params.sampling, &seconds);
+  opp::Primitives primitives = opp::detectPrimitives(surface, primitive_params, threads, &seconds);
   const std::chrono::duration<double> total = std::chrono::steady_clock::now() - start;
   opp::mapping::DetectionSummary summary;
   summary.points = scan.cloud_in_body.size();
@@ -81,7 +81,7 @@ Detection detect(opp::mapping::Scan scan, const MapperParams& params, int thread
                         {"lines", milliseconds(seconds.lines)},
                         {"corners", milliseconds(seconds.corners)},
                         {"total", milliseconds(total.count())}};
-  return {std::move(scan), std::move(samples), std::move(primitives), std::move(summary)};
+  return {std::move(scan), std::move(surface.samples), std::move(primitives), std::move(summary)};
 }
 
 void write(const Request& request, const MapperParams& params, const Detection& found) {

@@ -86,8 +86,8 @@ void fromDepth(benchmark::State& state, Stage stage) {
   Primitives found;
   for (auto _ : state) {
     StageTimings timings;
-    found = detectPrimitives(makeOrientedCloud(cloud, params.sensor, params.sampling, &timings),
-                             params, 1, &timings);
+    ScanSurface surface = makeScanSurface(cloud, params.sensor, params.sampling, &timings);
+    found = detectPrimitives(surface, params, 1, &timings);
     state.SetIterationTime(timings.*stage);
   }
   report(state, found);
@@ -109,7 +109,8 @@ void wholeChain(benchmark::State& state) {
   const PrimitiveParams params;
   Primitives found;
   for (auto _ : state) {
-    found = detectPrimitives(makeOrientedCloud(cloud, params.sensor, params.sampling), params);
+    ScanSurface surface = makeScanSurface(cloud, params.sensor, params.sampling);
+    found = detectPrimitives(surface, params);
     benchmark::DoNotOptimize(found);
   }
   report(state, found);
@@ -136,8 +137,8 @@ void recorded(benchmark::State& state, const std::string& name) {
       {"refinement", &StageTimings::refinement}, {"corners_", &StageTimings::corners},
       {"lines_", &StageTimings::lines}};
   for (auto _ : state) {
-    found = detectPrimitives(makeOrientedCloud(cloud, params.sensor, params.sampling, &timings),
-                             params, 1, &timings);
+    ScanSurface surface = makeScanSurface(cloud, params.sensor, params.sampling, &timings);
+    found = detectPrimitives(surface, params, 1, &timings);
     for (const auto& stage : stages) sum.*stage.second += timings.*stage.second;
   }
   report(state, found);

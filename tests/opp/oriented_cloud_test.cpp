@@ -66,6 +66,81 @@ void expectSound(const OrientedCloud& cloud) {
   }
 }
 
+TEST(ScanSurface, OpenSamplesAreSplitIntoTheirPatches) {
+  Random random(11);
+  for (int trial = 0; trial < 50; ++trial) {
+    const auto planes = cornerFacingOrigin(random, {random.uniform(1.0, 3.0), 0.0, 0.0});
+    const PointCloud input = test::renderDepth(kSmallCamera, test::insideOf(planes));
+    SamplingParams params;
+    params.target_samples = 500;
+    ScanSurface surface = makeScanSurface(input, idealSensor(), params);
+    ASSERT_EQ(surface.sample_of_patch.size(), surface.patches.size());
+    std::vector<std::uint8_t> open(surface.samples.size());
+    for (std::uint8_t& flag : open) flag = random.uniform(0.0, 1.0) < 0.3 ? 1 : 0;
+    double points = 0.0;
+    std::size_t split = 0, kept = 0;
+    for (const float weight : surface.samples.weights) points += static_cast<double>(weight);
+    for (const int sample : surface.sample_of_patch) {
+      split += open[static_cast<std::size_t>(sample)];
+    }
+    for (const std::uint8_t flag : open) kept += flag == 0 ? 1 : 0;
+    EXPECT_EQ(splitSamples(surface, open), kept);
+    EXPECT_EQ(surface.samples.size(), kept + split);
+    EXPECT_EQ(surface.patches.size(), 0U);
+    expectSound(surface.samples);
+    for (std::size_t i = 0; i < surface.samples.size(); ++i) {
+      points -= static_cast<double>(surface.samples.weights[i]);
+      ASSERT_GT(surface.samples.extent(i), 0.0);
+      ASSERT_LE(surface.samples.extent(i), surface.samples.spacing * 1.000001);
+    }
+    EXPECT_EQ(points, 0.0) << "every raw point stays in one sample; sums of whole numbers";
+  }
+}
+
+TEST(ScanSurface, PatchesStandForTheSurfaceTheyCover) {
+  // A wall of 4 m² seen frontally from 2 m by a camera that sees all of it and nothing else.
+  const Plane wall = Plane::fromPointNormal({2.0, 0.0, 0.0}, {-1.0, 0.0, 0.0});
+  const Camera camera{100, 100, 100.0};
+  const PointCloud input = test::renderDepth(camera, test::insideOf({wall}));
+  const ScanSurface surface = makeScanSurface(input, idealSensor(), SamplingParams{});
+  double area = 0.0;
+  for (std::size_t i = 0; i < surface.patches.size(); ++i) {
+    area += surface.patches.extent(i) * surface.patches.extent(i);
+  }
+  // Angles between rays are the image centre's in the median, 15 % smaller at its rim.
+  EXPECT_NEAR(area, 4.0, 0.4);
+}
+
+TEST(ScanSurface, ShowsHowFarNoiseIsCorrelated) {
+  Random random(12);
+  const Plane wall = Plane::fromPointNormal({2.0, 0.0, 0.0}, {-1.0, 0.2, 0.1});
+  PointCloud input = test::renderDepth(Camera{}, test::insideOf({wall}));
+  test::addRangeNoise(input, SensorModel{}, random);
+  const ScanSurface independent = makeScanSurface(input, SensorModel{}, SamplingParams{});
+  EXPECT_GE(independent.samples.noise_correlation, 0.0);
+  EXPECT_LT(independent.samples.noise_correlation, 0.02);
+  // Blocks of 4 × 4 pixels, which are the patches, err alike: as if all their errors were one.
+  for (int row = 0; row < 480; ++row) {
+    for (int col = 0; col < 640; ++col) {
+      const auto at = static_cast<std::size_t>(row * 640 + col);
+      const auto first = static_cast<std::size_t>(row / 4 * 4 * 640 + col / 4 * 4);
+      const Vector3f along = input.points[at].normalized();
+      const double range = wall.d() / -wall.normal().dot(along.cast<double>());
+      const double error =
+          input.points[first].cast<double>().norm() -
+          wall.d() / -wall.normal().dot(input.points[first].cast<double>().normalized());
+      if (at != first) input.points[at] = static_cast<float>(range + error) * along;
+    }
+  }
+  const ScanSurface correlated = makeScanSurface(input, SensorModel{}, SamplingParams{});
+  // Noise above three times the model's is taken for structure: 9 of 16.
+  EXPECT_GT(correlated.samples.noise_correlation, 0.4);
+  const SensorModel sensor;
+  EXPECT_EQ(sensor.withCorrelation(0.4).noise_correlation, sensor.noise_correlation);
+  EXPECT_EQ(sensor.withCorrelation(0.01).noise_correlation, 0.01);
+  EXPECT_EQ(sensor.withCorrelation(-1.0).noise_correlation, sensor.noise_correlation);
+}
+
 TEST(OrientedCloud, SamplesOfANoiseFreePlaneLieOnIt) {
   Random random(1);
   for (int trial = 0; trial < 50; ++trial) {

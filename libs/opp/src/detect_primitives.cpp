@@ -12,11 +12,12 @@
 
 namespace opp {
 
-Primitives detectPrimitives(const OrientedCloud& cloud, const PrimitiveParams& params, int threads,
+Primitives detectPrimitives(ScanSurface& surface, const PrimitiveParams& params, int threads,
                             StageTimings* timings) {
   StageTimings laps = timings == nullptr ? StageTimings() : *timings;
   Stopwatch stopwatch;
-  const OppHypotheses hypotheses = detectOpps(cloud, params.sensor, params.voting, threads);
+  const OppHypotheses hypotheses = detectOpps(surface, params.sensor, params.voting, threads);
+  const OrientedCloud& cloud = surface.samples;
   laps.voting = stopwatch.lap();
   const PlaneGraph graph = buildPlaneGraph(cloud, hypotheses, params.sensor, params.graph);
   laps.clustering = stopwatch.lap();
@@ -28,6 +29,12 @@ Primitives detectPrimitives(const OrientedCloud& cloud, const PrimitiveParams& p
   laps.lines = stopwatch.lap();
   if (timings != nullptr) *timings = laps;
   return primitives;
+}
+
+Primitives detectPrimitives(const OrientedCloud& cloud, const PrimitiveParams& params, int threads,
+                            StageTimings* timings) {
+  ScanSurface surface{cloud, {}, {}};
+  return detectPrimitives(surface, params, threads, timings);
 }
 
 }  // namespace opp

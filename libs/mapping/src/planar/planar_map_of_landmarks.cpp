@@ -49,12 +49,12 @@ std::vector<PlaneExtent> extentsOf(const MapState& map, const PlanarParams& para
       const Eigen::Vector3d point = keyframe.map_from_body * cloud.points[i].cast<double>();
       const int label = keyframe.features.primitives_in_body.labels[i];
       const int own = label < 0 ? -1 : keyframe.landmark_of_plane[Index(label)];
-      if (own >= 0) extents[Index(own)].addSupport(point, cloud.spacing);
+      if (own >= 0) extents[Index(own)].addSupport(point, cloud.extent(i));
       // A ray counts as passing through a plane only if it ends clearly behind it.
       const double clearance = 2.0 * cloud.spacing;
       for (Index l = 0; l < extents.size(); ++l) {
         if (static_cast<int>(l) != own)
-          extents[l].addSightline(viewpoint, point, cloud.spacing, clearance);
+          extents[l].addSightline(viewpoint, point, cloud.extent(i), clearance);
       }
     }
   }

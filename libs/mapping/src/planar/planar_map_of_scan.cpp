@@ -34,6 +34,28 @@ Eigen::Vector3d edgeDirection(const Primitives& primitives, int plane) {
   return Eigen::Vector3d::UnitZ();
 }
 
+/// Mean extent of a plane's samples [m]; the cloud's spacing if it has none.
+double meanExtent(const OrientedCloud& cloud, const Primitives& primitives, int plane) {
+  double sum = 0.0, count = 0.0;
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    if (primitives.labels[i] != plane) continue;
+    sum += cloud.extent(i);
+    count += 1.0;
+  }
+  return count > 0.0 ? sum / count : cloud.spacing;
+}
+
+/// A map's lengths are for places seen from many viewpoints. In one scan what is finer than they
+/// are is known as well as samples of extent `extent` [m] show it.
+PlanarParams atExtent(const PlanarParams& params, double extent) {
+  constexpr double kLeastSamples = 4.0;  // of a polygon
+  PlanarParams result = params;
+  result.cell = std::min(params.cell, extent);
+  result.min_area = std::min(params.min_area, kLeastSamples * extent * extent);
+  result.outline_tolerance = std::min(params.outline_tolerance, extent);
+  return result;
+}
+
 PlaneExtent extentOf(const OrientedCloud& cloud, const Primitives& primitives, int plane,
                      const PlanarParams& params) {
   const PlaneFrame frame(primitives.planes[static_cast<std::size_t>(plane)].plane,
@@ -43,9 +65,9 @@ PlaneExtent extentOf(const OrientedCloud& cloud, const Primitives& primitives, i
   for (std::size_t i = 0; i < cloud.size(); ++i) {
     const Eigen::Vector3d point = cloud.points[i].cast<double>();
     if (primitives.labels[i] == plane) {
-      extent.addSupport(point, cloud.spacing);
+      extent.addSupport(point, cloud.extent(i));
     } else {
-      extent.addSightline(viewpoint, point, cloud.spacing,
+      extent.addSightline(viewpoint, point, cloud.extent(i),
                           std::max(params.cell, kBehind * cloud.sigmas[i]));
     }
   }
@@ -67,7 +89,8 @@ PlanarMapPlane planeOf(const OrientedCloud& cloud, const Primitives& primitives,
     if (primitives.labels[i] == id) points += static_cast<double>(cloud.weights[i]);
   }
   plane.points = std::lround(points);
-  plane.polygons = buildPolygons(extentOf(cloud, primitives, id, params), params);
+  const PlanarParams fine = atExtent(params, meanExtent(cloud, primitives, id));
+  plane.polygons = buildPolygons(extentOf(cloud, primitives, id, fine), fine);
   plane.area = areaOf(plane.polygons, plane.plane.normal());
   plane.centroid = plane.polygons.empty() ? plane.plane.project(primitive.moments.mean())
                                           : centroidOf(plane.polygons, plane.plane.normal());

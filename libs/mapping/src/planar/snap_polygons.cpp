@@ -10,12 +10,17 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <stdexcept>
 
 namespace opp::mapping {
 namespace {
 
 /// Vertices on a straight edge are dropped: far above rounding, far below what shows.
 constexpr double kStraight = 1e-6;
+/// Outlines move by at most this share of a polygon's width.
+constexpr double kSnapShare = 0.4;
+/// Parts that a polygon falls into are kept from this share of it on.
+constexpr double kKeptShare = 0.5;
 
 /// What the outlines on one plane snap to, in the plane's coordinates.
 struct Targets {
@@ -65,8 +70,15 @@ Eigen::Vector2d snapped(const Eigen::Vector2d& vertex, const Targets& targets, d
   return best;
 }
 
+/// Nothing if snapping has moved holes and outline through each other in a way that GEOS cannot
+/// untie.
 std::vector<Polygon2d> partsOf(const Polygon2d& polygon, double min_area, const Geos& geos) {
-  const Geos::Geometry shape = geos.untied(geos.polygon(polygon));
+  Geos::Geometry shape = geos.collection({});
+  try {
+    shape = geos.untied(geos.polygon(polygon));
+  } catch (const std::runtime_error&) {
+    return {};
+  }
   std::vector<Polygon2d> parts = geos.polygonsOf(geos.simplify(shape, kStraight));
   const auto is_small = [&](const Ring2d& ring) { return std::abs(signedArea(ring)) < min_area; };
   for (Polygon2d& part : parts) {
@@ -77,6 +89,15 @@ std::vector<Polygon2d> partsOf(const Polygon2d& polygon, double min_area, const 
                              [&](const Polygon2d& part) { return is_small(part.outer); }),
               parts.end());
   return parts;
+}
+
+/// Mean width of what a ring encloses [m]: a strip's own, half of a square's.
+double widthOf(const std::vector<Eigen::Vector3d>& ring, const Eigen::Vector3d& normal) {
+  double perimeter = 0.0;
+  for (std::size_t k = 0; k < ring.size(); ++k) {
+    perimeter += (ring[(k + 1) % ring.size()] - ring[k]).norm();
+  }
+  return perimeter > 0.0 ? 2.0 * areaOf({{ring, {}}}, normal) / perimeter : 0.0;
 }
 
 Ring2d snappedRing(const std::vector<Eigen::Vector3d>& ring, const PlaneFrame& frame,
@@ -104,11 +125,16 @@ void snapPolygons(PlanarMap& map, const PlanarParams& params) {
     if (targets.empty() || plane.polygons.empty()) continue;
     std::vector<PlanarPolygon> polygons;
     for (const PlanarPolygon& polygon : plane.polygons) {
-      Polygon2d flat{snappedRing(polygon.outer, frame, targets, params.snap), {}};
+      // A strip must not be flattened to a line.
+      const double width = widthOf(polygon.outer, plane.plane.normal());
+      const double reach = std::min(params.snap, kSnapShare * width);
+      Polygon2d flat{snappedRing(polygon.outer, frame, targets, reach), {}};
       for (const auto& hole : polygon.holes) {
-        flat.holes.push_back(snappedRing(hole, frame, targets, params.snap));
+        flat.holes.push_back(snappedRing(hole, frame, targets, reach));
       }
-      for (const Polygon2d& part : partsOf(flat, params.min_area, geos)) {
+      const double min_area =
+          std::min(params.min_area, kKeptShare * areaOf({polygon}, plane.plane.normal()));
+      for (const Polygon2d& part : partsOf(flat, min_area, geos)) {
         polygons.push_back({lifted(part.outer, frame), {}});
         for (const Ring2d& hole : part.holes) {
           polygons.back().holes.push_back(lifted(hole, frame));

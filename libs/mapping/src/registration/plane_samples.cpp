@@ -5,8 +5,9 @@
 namespace opp::mapping {
 
 float sampleVariance(const OrientedCloud& cloud, std::size_t sample, const SensorModel& sensor) {
-  const double sigma = sensor.meanSigma(static_cast<double>(cloud.sigmas[sample]),
-                                        static_cast<double>(cloud.weights[sample]));
+  const double sigma = sensor.withCorrelation(cloud.noise_correlation)
+                           .meanSigma(static_cast<double>(cloud.sigmas[sample]),
+                                      static_cast<double>(cloud.weights[sample]));
   return static_cast<float>(sigma * sigma);
 }
 

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "opp/cloud/oriented_cloud.h"
 #include "opp/geometry/point_cloud.h"
 #include "opp/params/primitive_params.h"
 #include "opp/primitives/primitives.h"
@@ -16,5 +17,10 @@ namespace opp {
 /// stages in `timings` unless null. \throws std::invalid_argument if a parameter is out of range.
 Primitives detectPrimitives(const OrientedCloud& cloud, const PrimitiveParams& params,
                             int threads = 1, StageTimings* timings = nullptr);
+
+/// As above, with more detail: samples on no large plane are split into the patches that they were
+/// averaged from. The labels are of `surface.samples` as they are then.
+Primitives detectPrimitives(ScanSurface& surface, const PrimitiveParams& params, int threads = 1,
+                            StageTimings* timings = nullptr);
 
 }  // namespace opp

@@ -59,7 +59,8 @@ class Sampler {
     sums_.reserve(expected);
   }
 
-  void add(const Eigen::Vector3f& point, const Eigen::Vector3f& normal, float sigma, float weight) {
+  /// Returns the sample that the entry joins.
+  int add(const Eigen::Vector3f& point, const Eigen::Vector3f& normal, float sigma, float weight) {
     int sample = nearest(point, normal, sigma, weight);
     if (sample < 0) sample = insert(point, normal);
     const auto k = static_cast<std::size_t>(sample);
@@ -68,6 +69,7 @@ class Sampler {
     sums_[k].normal += w * normal.cast<double>();
     sums_[k].variance += w * static_cast<double>(sigma * sigma);
     sums_[k].weight += w;
+    return sample;
   }
 
   void write(OrientedCloud& out) const {
@@ -191,8 +193,8 @@ double spacingForCount(const std::vector<Eigen::Vector3f>& points, std::size_t t
   return edge;
 }
 
-OrientedCloud sampleEvenly(const OrientedCloud& dense, double spacing,
-                           const SamplingParams& params) {
+OrientedCloud sampleEvenly(const OrientedCloud& dense, double spacing, const SamplingParams& params,
+                           std::vector<int>* sample_of_entry) {
   if (!(spacing > 0.0) || !std::isfinite(spacing)) {
     throw std::invalid_argument("the spacing of samples must be positive and finite");
   }
@@ -202,8 +204,11 @@ OrientedCloud sampleEvenly(const OrientedCloud& dense, double spacing,
   result.spacing = std::max(spacing, smallestCell(extent));
   const auto target = static_cast<std::size_t>(params.target_samples);
   Sampler sampler(extent, result.spacing, std::min(dense.size(), target), params);
+  if (sample_of_entry != nullptr) sample_of_entry->clear();
   for (std::size_t i = 0; i < dense.size(); ++i) {
-    sampler.add(dense.points[i], dense.normals[i], dense.sigmas[i], dense.weights[i]);
+    const int sample =
+        sampler.add(dense.points[i], dense.normals[i], dense.sigmas[i], dense.weights[i]);
+    if (sample_of_entry != nullptr) sample_of_entry->push_back(sample);
   }
   sampler.write(result);
   return result;

@@ -125,6 +125,7 @@ GridPatches makeGridPatches(const PointCloud& cloud, const SensorModel& sensor,
   grid.columns_wrap = cloud.columns_wrap;
   grid.patches.origin = roughCenter(cloud, gate);
   grid.patches.pixel_angle = std::min(angles.row, angles.col);
+  grid.patches.solid_angle = angles.row * angles.col;
   grid.patches.reserve(static_cast<std::size_t>(grid.rows) * static_cast<std::size_t>(grid.cols));
   for (int r = 0; r < grid.rows; ++r) {
     for (int c = 0; c < grid.cols; ++c) {

@@ -71,14 +71,19 @@ OrientedCloud fromGivenNormals(const PointCloud& cloud, const SensorModel& senso
 
 OrientedCloud fromPatches(const Patches& patches, PatchWindows& windows, const PointCloud& cloud,
                           const SensorModel& sensor, const SamplingParams& params) {
-  PatchNormals estimator(patches, windows, cloud.viewpoint.cast<double>(), sensor, params);
+  const Eigen::Vector3d viewpoint = cloud.viewpoint.cast<double>();
+  PatchNormals estimator(patches, windows, viewpoint, sensor, params);
   const std::vector<PatchNormal> normals = estimator.estimate();
   OrientedCloud dense;
+  dense.noise_correlation = estimator.noiseCorrelation();
   reserve(dense, patches.size());
+  dense.extents.reserve(patches.size());
   for (std::size_t i = 0; i < patches.size(); ++i) {
-    if (normals[i].normal.isZero()) continue;
-    append(dense, (patches.origin + patches.means[i]).cast<float>(),
-           normals[i].normal.cast<float>(), normals[i].sigma, patches.sums[i][0]);
+    const Eigen::Vector3d& normal = normals[i].normal;
+    if (normal.isZero()) continue;
+    const Eigen::Vector3d point = patches.origin + patches.means[i];
+    append(dense, point.cast<float>(), normal.cast<float>(), normals[i].sigma, patches.sums[i][0]);
+    dense.extents.push_back(static_cast<float>(patches.extentOf(i, normal, viewpoint - point)));
   }
   return dense;
 }
@@ -115,7 +120,7 @@ double medianSigma(std::vector<float> sigmas) {
   return static_cast<double>(*middle);
 }
 
-OrientedCloud thinned(OrientedCloud dense, const SamplingParams& params) {
+ScanSurface thinned(OrientedCloud dense, const SamplingParams& params) {
   // Samples at least d apart, drawn one by one, end at 0.547·4/π = 0.70 per d² (jamming limit of
   // discs, Feder 1980); cells of edge h number one per h² of surface.
   const double distance_per_edge = std::sqrt(0.547 * 4.0 / kPi);
@@ -123,14 +128,33 @@ OrientedCloud thinned(OrientedCloud dense, const SamplingParams& params) {
       spacingForCount(dense.points, static_cast<std::size_t>(params.target_samples), 0.0);
   const double spacing =
       std::max(distance_per_edge * edge, params.spacing_per_sigma * medianSigma(dense.sigmas));
-  if (!(spacing > 0.0)) return dense;
-  return sampleEvenly(dense, spacing, params);
+  ScanSurface surface;
+  if (!(spacing > 0.0)) {
+    dense.extents.clear();
+    surface.samples = std::move(dense);
+    return surface;
+  }
+  surface.samples = sampleEvenly(dense, spacing, params, &surface.sample_of_patch);
+  surface.samples.noise_correlation = dense.noise_correlation;
+  if (!dense.extents.empty()) surface.patches = std::move(dense);
+  return surface;
+}
+
+/// Appends the samples of `from` for which wanted(i).
+template <typename Wanted>
+void appendSome(const OrientedCloud& from, const Wanted& wanted, OrientedCloud& to) {
+  for (std::size_t i = 0; i < from.size(); ++i) {
+    if (!wanted(i)) continue;
+    append(to, from.points[i], from.normals[i], static_cast<double>(from.sigmas[i]),
+           static_cast<double>(from.weights[i]));
+    to.extents.push_back(static_cast<float>(std::min(from.extent(i), to.spacing)));
+  }
 }
 
 }  // namespace
 
-OrientedCloud makeOrientedCloud(const PointCloud& cloud, const SensorModel& sensor,
-                                const SamplingParams& params, StageTimings* timings) {
+ScanSurface makeScanSurface(const PointCloud& cloud, const SensorModel& sensor,
+                            const SamplingParams& params, StageTimings* timings) {
   validate(sensor);
   validate(params);
   check(cloud);
@@ -139,10 +163,35 @@ OrientedCloud makeOrientedCloud(const PointCloud& cloud, const SensorModel& sens
   OrientedCloud dense = denseSurface(cloud, sensor, params);
   dense.viewpoint = cloud.viewpoint;
   laps.normals = stopwatch.lap();
-  OrientedCloud samples = thinned(std::move(dense), params);
+  ScanSurface surface = thinned(std::move(dense), params);
   laps.sampling = stopwatch.lap();
   if (timings != nullptr) *timings = laps;
-  return samples;
+  return surface;
+}
+
+OrientedCloud makeOrientedCloud(const PointCloud& cloud, const SensorModel& sensor,
+                                const SamplingParams& params, StageTimings* timings) {
+  return makeScanSurface(cloud, sensor, params, timings).samples;
+}
+
+std::size_t splitSamples(ScanSurface& surface, const std::vector<std::uint8_t>& open) {
+  const OrientedCloud& samples = surface.samples;
+  OrientedCloud split;
+  split.spacing = samples.spacing;
+  split.viewpoint = samples.viewpoint;
+  split.noise_correlation = samples.noise_correlation;
+  reserve(split, samples.size() + surface.patches.size());
+  appendSome(
+      samples, [&](std::size_t i) { return open[i] == 0; }, split);
+  const std::size_t begin = split.size();
+  appendSome(
+      surface.patches,
+      [&](std::size_t i) {
+        return open[static_cast<std::size_t>(surface.sample_of_patch[i])] != 0;
+      },
+      split);
+  surface = {std::move(split), {}, {}};
+  return begin;
 }
 
 }  // namespace opp

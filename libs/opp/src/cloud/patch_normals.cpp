@@ -95,6 +95,14 @@ void PatchNormals::measureNoise() {
   spread_scale_ = scaleFrom(within);
 }
 
+double PatchNormals::noiseCorrelation() const {
+  double points = 0.0;
+  for (const MomentSums& sums : patches_.sums) points += sums[0];
+  const double others =
+      points / static_cast<double>(std::max<std::size_t>(1, patches_.size())) - 1.0;
+  return others > 0.0 ? std::max(0.0, (noise_scale_ - 1.0) / others) : -1.0;
+}
+
 double PatchNormals::spreadOf(int patch, const Eigen::Vector3d& normal) const {
   const auto k = static_cast<std::size_t>(patch);
   const MomentSums& s = patches_.sums[k];

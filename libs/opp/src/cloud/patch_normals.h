@@ -51,6 +51,10 @@ class PatchNormals {
   /// One normal per patch. O(patches) windows.
   std::vector<PatchNormal> estimate();
 
+  /// Correlation of the errors of raw points in one patch, from the means of neighbouring patches,
+  /// which scatter the more (1 + (n − 1) ρ times as much for n points); once estimate() is done.
+  double noiseCorrelation() const;
+
  private:
   void measureNoise();
   const WindowFit& fit(int patch, int radius);

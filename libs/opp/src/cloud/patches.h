@@ -4,6 +4,8 @@
 
 #include <Eigen/Core>
 
+#include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <vector>
 
@@ -34,11 +36,22 @@ struct Patches {
   std::vector<MomentSums> sums;                      ///< none is empty
   std::vector<Eigen::Vector3d> means;                ///< relative to the origin
   double pixel_angle = 0.0;  ///< between the rays of grid neighbours, the closer ones; 0: no grid
+  double solid_angle = 0.0;  ///< of a pixel of the grid [sr]; 0: no grid
+  double edge = 0.0;         ///< of the cells that are the patches where there is no grid [m]
 
   std::size_t size() const { return sums.size(); }
   void reserve(std::size_t count) {
     sums.reserve(count);
     means.reserve(count);
+  }
+  /// Edge of the square of surface that a patch stands for [m].
+  double extentOf(std::size_t patch, const Eigen::Vector3d& normal,
+                  const Eigen::Vector3d& to_viewpoint) const {
+    if (solid_angle == 0.0) return edge;
+    // r² dω / cos: a pixel's part of a surface that is seen at an angle.
+    const double range = to_viewpoint.norm();
+    const double cosine_range = std::max(std::abs(normal.dot(to_viewpoint)), 0.1 * range);
+    return range * std::sqrt(sums[patch][0] * solid_angle * range / cosine_range);
   }
   void add(const MomentSums& patch_sums) {
     sums.push_back(patch_sums);

@@ -84,6 +84,7 @@ Patches makeVoxelPatches(const std::vector<Eigen::Vector3f>& points, double edge
   Eigen::Vector3f low = points.front();
   for (const Eigen::Vector3f& p : points) low = low.cwiseMin(p);
   patches.origin = low.cast<double>();
+  patches.edge = edge;
   CellTable table(low, edge, points.size() / 2);
   std::vector<MomentSums> sums;
   for (const Eigen::Vector3f& point : points) {

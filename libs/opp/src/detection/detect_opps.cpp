@@ -65,7 +65,8 @@ class Detector {
     const Eigen::Vector3d anchor = sample.point.cast<double>() + fit.mean;
     Plane plane = Plane::fromPointNormal(anchor, fit.plane.normal());
     if (plane.signedDistance(scene_.viewpoint) < 0.0) plane = plane.flipped();
-    found.planes.push_back({plane, anchor, static_cast<double>(fit.votes)});
+    found.planes.push_back(
+        {plane, anchor, static_cast<double>(fit.votes), scene_.radius, scene_.spacing});
     return static_cast<int>(found.planes.size()) - 1;
   }
 
@@ -116,27 +117,92 @@ void detectInRounds(const VotingScene& scene, const VoteThresholds& thresholds, 
   }
 }
 
+/// Wide neighbourhoods; returns which samples no plane of at least `least` samples explains.
+std::vector<std::uint8_t> voteWide(const OrientedCloud& cloud, int least, const SensorModel& sensor,
+                                   const VotingParams& params, const VoteThresholds& thresholds,
+                                   int threads, OppHypotheses& found) {
+  const std::vector<VotingSample> samples = votingSamples(cloud, 0, sensor, params);
+  OpenSamples open(samples, std::vector<std::uint8_t>(samples.size(), 1), params.normal_tolerance);
+  const VotingScene scene(samples, cloud.viewpoint, params, params.neighbourhood * cloud.spacing,
+                          cloud.spacing);
+  detectInRounds(scene, thresholds, threads, open, found);
+  open.reopen(least);
+  return open.flags();
+}
+
+/// Samples of about the same extent, and which of them no plane explains.
+struct Level {
+  std::vector<VotingSample> samples;
+  std::vector<std::uint8_t> open;
+
+  double meanExtent() const {
+    double sum = 0.0;
+    for (const VotingSample& sample : samples) sum += static_cast<double>(sample.extent);
+    return sum / static_cast<double>(samples.size());
+  }
+};
+
+/// The samples by octaves of their extents, from `spacing` down.
+std::vector<Level> levelsOf(const std::vector<VotingSample>& samples,
+                            const std::vector<std::uint8_t>& open, double spacing) {
+  constexpr int kLevels = 8;  // the last takes all below
+  std::vector<Level> levels(kLevels);
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    const double octave = std::log2(spacing / static_cast<double>(samples[i].extent));
+    Level& level = levels[static_cast<std::size_t>(std::clamp(octave, 0.0, kLevels - 1.0))];
+    level.samples.push_back(samples[i]);
+    level.open.push_back(open[i]);
+  }
+  return levels;
+}
+
+/// Planes that fill little of the wide neighbourhood get few of its votes: what is left over votes
+/// again among its nearest. All at once: few partners make poor planes, which must not close the
+/// samples of better ones.
+void voteNarrow(const std::vector<Level>& levels, const Eigen::Vector3f& viewpoint,
+                const VotingParams& params, const VoteThresholds& thresholds, int threads,
+                OppHypotheses& found) {
+  for (const Level& level : levels) {
+    if (level.samples.size() < 3) continue;
+    const OpenSamples open(level.samples, level.open, params.normal_tolerance);
+    if (open.empty()) continue;
+    const double extent = level.meanExtent();
+    const VotingScene scene(level.samples, viewpoint, params,
+                            params.neighbourhood / params.narrowing * extent, extent);
+    std::vector<std::uint8_t> taken(level.samples.size(), 0);
+    const auto references = open.take(scene.grid.order(), params.narrow_reference_points, taken);
+    append(detectAtAll(scene, thresholds, references, threads), found);
+  }
+}
+
 }  // namespace
+
+OppHypotheses detectOpps(ScanSurface& surface, const SensorModel& sensor,
+                         const VotingParams& params, int threads) {
+  validate(params);
+  const double spacing = surface.samples.spacing;
+  if (surface.samples.size() < 3 || !(spacing > 0.0)) return {};
+  OppHypotheses found;
+  const VoteThresholds thresholds(params);
+  const bool detail = surface.patches.size() > 0;
+  std::vector<std::uint8_t> open = voteWide(surface.samples, detail ? params.detail_samples : 0,
+                                            sensor, params, thresholds, threads, found);
+  std::size_t begin = 0;
+  if (detail) {
+    // Detail votes with detail only: the rest of the scene is explained.
+    begin = splitSamples(surface, open);
+    open.assign(surface.samples.size() - begin, 1);
+  }
+  const auto samples = votingSamples(surface.samples, begin, sensor, params);
+  voteNarrow(levelsOf(samples, open, spacing), surface.samples.viewpoint, params, thresholds,
+             threads, found);
+  return found;
+}
 
 OppHypotheses detectOpps(const OrientedCloud& cloud, const SensorModel& sensor,
                          const VotingParams& params, int threads) {
-  validate(params);
-  if (cloud.size() < 3 || !(cloud.spacing > 0.0)) return {};
-  OppHypotheses found;
-  const VoteThresholds thresholds(params);
-  const std::vector<VotingSample> samples = votingSamples(cloud, sensor, params);
-  const double radius = params.neighbourhood * cloud.spacing;
-  OpenSamples open(samples, 0.5 * cloud.spacing, params.normal_tolerance);
-  detectInRounds(VotingScene(cloud, samples, params, radius), thresholds, threads, open, found);
-  if (open.empty() || params.narrow_reference_points == 0) return found;
-  // Planes that fill little of the wide neighbourhood get few of its votes: what is left over votes
-  // again among its nearest. All at once: few partners make poor planes, which must not close the
-  // samples of better ones.
-  const VotingScene narrow(cloud, samples, params, radius / params.narrowing);
-  std::vector<std::uint8_t> taken(samples.size(), 0);
-  const auto references = open.take(narrow.grid.order(), params.narrow_reference_points, taken);
-  append(detectAtAll(narrow, thresholds, references, threads), found);
-  return found;
+  ScanSurface surface{cloud, {}, {}};
+  return detectOpps(surface, sensor, params, threads);
 }
 
 }  // namespace opp

@@ -9,16 +9,23 @@
 namespace opp {
 namespace {
 
-bool samePlane(const PlaneHypothesis& a, const PlaneHypothesis& b, double reach, double cosine) {
+bool samePlane(const PlaneHypothesis& a, const PlaneHypothesis& b, double cosine) {
+  // Half the least distance of parallel surfaces that the samples can tell apart.
+  const double reach = 0.5 * std::min(a.spacing, b.spacing);
   return std::abs(a.plane.normal().dot(b.plane.normal())) > cosine &&
          std::abs(a.plane.signedDistance(b.anchor)) < reach &&
          std::abs(b.plane.signedDistance(a.anchor)) < reach;
 }
 
+Eigen::AlignedBox3f boxOf(const PlaneHypothesis& hypothesis) {
+  const Eigen::Vector3f anchor = hypothesis.anchor.cast<float>();
+  const Eigen::Vector3f reach = Eigen::Vector3f::Constant(static_cast<float>(hypothesis.reach));
+  return {anchor - reach, anchor + reach};
+}
+
 }  // namespace
 
-GatheredHypotheses gatherHypotheses(const std::vector<PlaneHypothesis>& hypotheses, double reach,
-                                    double angle) {
+GatheredHypotheses gatherHypotheses(const std::vector<PlaneHypothesis>& hypotheses, double angle) {
   std::vector<std::size_t> order(hypotheses.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
@@ -30,10 +37,15 @@ GatheredHypotheses gatherHypotheses(const std::vector<PlaneHypothesis>& hypothes
   for (const std::size_t h : order) {
     const auto leader =
         std::find_if(gathered.leaders.begin(), gathered.leaders.end(), [&](std::size_t candidate) {
-          return samePlane(hypotheses[candidate], hypotheses[h], reach, cosine);
+          return samePlane(hypotheses[candidate], hypotheses[h], cosine);
         });
+    const auto slot = static_cast<std::size_t>(leader - gathered.leaders.begin());
     gathered.leader_of[h] = leader == gathered.leaders.end() ? h : *leader;
-    if (leader == gathered.leaders.end()) gathered.leaders.push_back(h);
+    if (slot == gathered.leaders.size()) {
+      gathered.leaders.push_back(h);
+      gathered.boxes.emplace_back();
+    }
+    gathered.boxes[slot].extend(boxOf(hypotheses[h]));
   }
   return gathered;
 }

@@ -6,17 +6,17 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
+#include <utility>
 
 namespace opp {
 
-OpenSamples::OpenSamples(const std::vector<VotingSample>& samples, double reach, double angle)
-    : samples_(samples),
-      reach_(reach),
-      angle_(angle),
-      is_open_(samples.size(), 1),
-      open_(samples.size()) {
-  std::iota(open_.begin(), open_.end(), 0U);
+OpenSamples::OpenSamples(const std::vector<VotingSample>& samples,
+                         std::vector<std::uint8_t> is_open, double angle)
+    : samples_(samples), angle_(angle), is_open_(std::move(is_open)) {
+  for (std::uint32_t i = 0; i < is_open_.size(); ++i) {
+    if (is_open_[i] != 0) open_.push_back(i);
+  }
+  closer_.assign(is_open_.size(), -1);
 }
 
 std::vector<std::uint32_t> OpenSamples::take(const std::vector<std::uint32_t>& order, int count,
@@ -36,21 +36,39 @@ std::vector<std::uint32_t> OpenSamples::take(const std::vector<std::uint32_t>& o
 std::size_t OpenSamples::close(const std::vector<PlaneHypothesis>& planes) {
   const std::size_t before = open_.size();
   const auto cosine = static_cast<float>(std::cos(angle_));
-  for (const std::size_t leader : gatherHypotheses(planes, reach_, angle_).leaders) {
+  const GatheredHypotheses gathered = gatherHypotheses(planes, angle_);
+  for (std::size_t k = 0; k < gathered.leaders.size(); ++k) {
+    const std::size_t leader = gathered.leaders[k];
+    const Eigen::AlignedBox3f& box = gathered.boxes[k];
     const Eigen::Vector3f normal = planes[leader].plane.normal().cast<float>();
     const auto d = static_cast<float>(planes[leader].plane.d());
+    const auto plane = static_cast<std::int32_t>(closed_.size());
     std::size_t left = 0;
     for (const std::uint32_t i : open_) {
       const VotingSample& sample = samples_[i];
       const bool on_plane = (std::abs(normal.dot(sample.point) + d) < sample.gate) &
-                            (std::abs(normal.dot(sample.normal)) > cosine);
+                            (std::abs(normal.dot(sample.normal)) > cosine) &
+                            box.contains(sample.point);
       is_open_[i] = on_plane ? 0 : 1;
+      closer_[i] = plane;
       open_[left] = i;
       left += on_plane ? 0 : 1;
     }
+    closed_.push_back(static_cast<int>(open_.size() - left));
     open_.resize(left);
   }
   return before - open_.size();
+}
+
+void OpenSamples::reopen(int least) {
+  for (std::uint32_t i = 0; i < is_open_.size(); ++i) {
+    if (is_open_[i] != 0 || closer_[i] < 0) continue;
+    if (closed_[static_cast<std::size_t>(closer_[i])] < least) is_open_[i] = 1;
+  }
+  open_.clear();
+  for (std::uint32_t i = 0; i < is_open_.size(); ++i) {
+    if (is_open_[i] != 0) open_.push_back(i);
+  }
 }
 
 }  // namespace opp

@@ -27,28 +27,43 @@ VoteThresholds::VoteThresholds(const VotingParams& params) {
   }
 }
 
-std::vector<VotingSample> votingSamples(const OrientedCloud& cloud, const SensorModel& sensor,
-                                        const VotingParams& params) {
+std::vector<VotingSample> votingSamples(const OrientedCloud& cloud, std::size_t begin,
+                                        const SensorModel& sensor, const VotingParams& params) {
   std::vector<VotingSample> samples;
-  samples.reserve(cloud.size());
-  for (std::size_t i = 0; i < cloud.size(); ++i) {
-    const double sigma = sensor.meanSigma(static_cast<double>(cloud.sigmas[i]),
-                                          static_cast<double>(cloud.weights[i]));
-    const double gate = params.noise_gate * sigma + params.flatness * cloud.spacing;
-    samples.push_back({cloud.points[i], cloud.normals[i], static_cast<float>(gate)});
+  samples.reserve(cloud.size() - begin);
+  const SensorModel shown = sensor.withCorrelation(cloud.noise_correlation);
+  for (std::size_t i = begin; i < cloud.size(); ++i) {
+    const double sigma = shown.meanSigma(static_cast<double>(cloud.sigmas[i]),
+                                         static_cast<double>(cloud.weights[i]));
+    const double gate = params.noise_gate * sigma + params.flatness * cloud.extent(i);
+    samples.push_back({cloud.points[i], cloud.normals[i], static_cast<float>(gate),
+                       static_cast<float>(cloud.extent(i))});
   }
   return samples;
 }
 
+namespace {
+
+std::vector<Eigen::Vector3f> pointsOf(const std::vector<VotingSample>& samples) {
+  std::vector<Eigen::Vector3f> points;
+  points.reserve(samples.size());
+  for (const VotingSample& sample : samples) points.push_back(sample.point);
+  return points;
+}
+
+}  // namespace
+
 // Cells of half the radius: most of what they hold is inside the ball, and they are few.
-VotingScene::VotingScene(const OrientedCloud& cloud, const std::vector<VotingSample>& cloud_samples,
-                         const VotingParams& voting_params, double scene_radius)
+VotingScene::VotingScene(const std::vector<VotingSample>& scene_samples,
+                         const Eigen::Vector3f& scene_viewpoint, const VotingParams& voting_params,
+                         double scene_radius, double scene_spacing)
     : params(voting_params),
       radius(scene_radius),
-      grid(cloud.points, 0.5 * radius, static_cast<std::uint64_t>(params.seed)),
-      viewpoint(cloud.viewpoint.cast<double>()) {
-  samples.reserve(cloud_samples.size());
-  for (const std::uint32_t i : grid.order()) samples.push_back(cloud_samples[i]);
+      spacing(scene_spacing),
+      grid(pointsOf(scene_samples), 0.5 * radius, static_cast<std::uint64_t>(params.seed)),
+      viewpoint(scene_viewpoint.cast<double>()) {
+  samples.reserve(scene_samples.size());
+  for (const std::uint32_t i : grid.order()) samples.push_back(scene_samples[i]);
 }
 
 }  // namespace opp

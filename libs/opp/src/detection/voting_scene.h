@@ -9,6 +9,7 @@
 
 #include <Eigen/Core>
 
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -17,7 +18,8 @@ namespace opp {
 /// One sample of the cloud as voting needs it.
 struct VotingSample {
   Eigen::Vector3f point, normal;
-  float gate;  ///< [m] largest distance from its plane
+  float gate;    ///< [m] largest distance from its plane
+  float extent;  ///< [m] of the surface that it stands for
 };
 
 /// Votes needed against clutter, by the number of pairs that could have voted.
@@ -26,17 +28,17 @@ struct VoteThresholds {
   std::vector<int> coplanar, orthogonal;
 };
 
-/// The samples of `cloud`, in its order.
-std::vector<VotingSample> votingSamples(const OrientedCloud& cloud, const SensorModel& sensor,
-                                        const VotingParams& params);
+/// The samples of `cloud` from `begin` on, in its order.
+std::vector<VotingSample> votingSamples(const OrientedCloud& cloud, std::size_t begin,
+                                        const SensorModel& sensor, const VotingParams& params);
 
 /// The samples, prepared for voting within one radius.
 struct VotingScene {
-  /// `cloud_samples`: those of `cloud`.
-  VotingScene(const OrientedCloud& cloud, const std::vector<VotingSample>& cloud_samples,
-              const VotingParams& params, double radius);
+  VotingScene(const std::vector<VotingSample>& samples, const Eigen::Vector3f& viewpoint,
+              const VotingParams& params, double radius, double spacing);
   const VotingParams& params;
-  double radius;  ///< τ_d [m]
+  double radius;   ///< τ_d [m]
+  double spacing;  ///< of the samples [m]
   NeighbourhoodGrid grid;
   std::vector<VotingSample> samples;  ///< in the grid's order: partners lie side by side
   Eigen::Vector3d viewpoint;

@@ -22,6 +22,8 @@ struct Cluster {
   double votes = 0.0;
   double samples = 0.0;
   std::size_t hypothesis = 0;  ///< representative of the set
+  Eigen::AlignedBox3f reach;   ///< where its samples can be
+  double spacing = 0.0;        ///< of its samples [m]
 };
 
 struct Builder {
@@ -45,22 +47,26 @@ std::vector<std::size_t> descending(std::size_t count, const std::vector<double>
 /// One cluster for each set of hypotheses of one plane.
 void gatherClusters(Builder& builder) {
   const auto& planes = builder.hypotheses.planes;
-  // Half the least distance of parallel surfaces that the samples can tell apart.
-  const double reach = 0.5 * builder.cloud.spacing;
-  const GatheredHypotheses gathered = gatherHypotheses(planes, reach, builder.params.merge_angle);
+  const GatheredHypotheses gathered = gatherHypotheses(planes, builder.params.merge_angle);
   std::vector<double> votes(planes.size());
   for (std::size_t h = 0; h < planes.size(); ++h) {
     builder.sets.join(gathered.leader_of[h], h);
     votes[gathered.leader_of[h]] += planes[h].votes;
   }
-  for (const std::size_t leader : gathered.leaders) {
-    builder.clusters.push_back({planes[leader].plane, {}, votes[leader], 0.0, leader});
+  for (std::size_t k = 0; k < gathered.leaders.size(); ++k) {
+    const std::size_t leader = gathered.leaders[k];
+    Cluster cluster;
+    cluster.plane = planes[leader].plane;
+    cluster.votes = votes[leader];
+    cluster.hypothesis = leader;
+    cluster.reach = gathered.boxes[k];
+    builder.clusters.push_back(cluster);
   }
 }
 
-std::vector<Plane> planesOf(const Builder& builder) {
-  std::vector<Plane> planes;
-  for (const Cluster& cluster : builder.clusters) planes.push_back(cluster.plane);
+std::vector<SampleAssigner::LocalPlane> planesOf(const Builder& builder) {
+  std::vector<SampleAssigner::LocalPlane> planes;
+  for (const Cluster& cluster : builder.clusters) planes.push_back({cluster.plane, cluster.reach});
   return planes;
 }
 
@@ -70,29 +76,30 @@ void assignAndFit(Builder& builder) {
   builder.labels = builder.assigner.assign(planesOf(builder));
   const auto moments = builder.assigner.moments(builder.labels, builder.clusters.size());
   std::vector<int> counts(builder.clusters.size());
-  for (const int label : builder.labels) {
-    if (label >= 0) ++counts[static_cast<std::size_t>(label)];
+  std::vector<double> extents(builder.clusters.size());
+  for (std::size_t i = 0; i < builder.labels.size(); ++i) {
+    if (builder.labels[i] < 0) continue;
+    const auto c = static_cast<std::size_t>(builder.labels[i]);
+    ++counts[c];
+    extents[c] += builder.cloud.extent(i);
   }
+  const double least = leastSupport(builder.cloud, builder.params).samples;
   std::vector<Cluster> kept;
   std::vector<int> kept_of(builder.clusters.size(), -1);
   const Eigen::Vector3d viewpoint = builder.cloud.viewpoint.cast<double>();
   for (std::size_t c = 0; c < builder.clusters.size(); ++c) {
-    if (counts[c] < std::max(3.0, builder.params.min_area)) continue;
+    if (counts[c] < std::max(3.0, least)) continue;
     kept_of[c] = static_cast<int>(kept.size());
     kept.push_back(builder.clusters[c]);
     kept.back().moments = moments[c];
     kept.back().samples = counts[c];
+    kept.back().spacing = extents[c] / counts[c];
     kept.back().plane = moments[c].fitPlane(viewpoint);
   }
   for (int& label : builder.labels) {
     if (label >= 0) label = kept_of[static_cast<std::size_t>(label)];
   }
   builder.clusters = std::move(kept);
-}
-
-/// Mean squared distance of the points from the plane [m²].
-double meanSquare(const PointMoments& moments, const Plane& plane) {
-  return moments.squaredError(plane) / moments.weight();
 }
 
 /// Would the samples of both clusters still lie within the noise of their common plane? Tested for
@@ -108,9 +115,8 @@ bool mergeable(const Builder& builder, const Cluster& a, const Cluster& b) {
   const Plane plane = both.fitPlane(builder.cloud.viewpoint.cast<double>());
   const auto fits = [&](const Cluster& part) {
     const double sigma = std::sqrt(part.samples / part.moments.weight());
-    const double gate =
-        builder.params.noise_gate * sigma + builder.params.flatness * builder.cloud.spacing;
-    return meanSquare(part.moments, plane) < gate * gate / 3.0;
+    const double gate = builder.params.noise_gate * sigma + builder.params.flatness * part.spacing;
+    return part.moments.squaredError(plane) < part.moments.weight() * gate * gate / 3.0;
   };
   return fits(a) && fits(b);
 }
@@ -134,7 +140,10 @@ void mergeClusters(Builder& builder) {
     host->moments.merge(cluster.moments);
     host->plane = host->moments.fitPlane(viewpoint);
     host->votes += cluster.votes;
+    host->spacing = (host->samples * host->spacing + cluster.samples * cluster.spacing) /
+                    (host->samples + cluster.samples);
     host->samples += cluster.samples;
+    host->reach.extend(cluster.reach);
   }
   builder.clusters = std::move(merged);
 }
@@ -158,12 +167,11 @@ void dropUnsupported(Builder& builder) {
   builder.labels = builder.assigner.assignToFirst(planesOf(builder));
   const auto samples = samplesOf(builder);
   const auto moments = builder.assigner.moments(builder.labels, builder.clusters.size());
+  const SupportPatch least = leastSupport(builder.cloud, builder.params);
   std::vector<Cluster> kept;
-  const double spacing = builder.cloud.spacing;
   for (std::size_t c = 0; c < builder.clusters.size(); ++c) {
     const SupportPatch patch = largestPatch(builder.cloud, builder.clusters[c].plane, samples[c]);
-    if (patch.area >= builder.params.min_area * spacing * spacing &&
-        patch.width >= builder.params.min_width * spacing) {
+    if (patch.samples >= least.samples && patch.width >= least.width) {
       kept.push_back(builder.clusters[c]);
       kept.back().plane = moments[c].fitPlane(builder.cloud.viewpoint.cast<double>());
     }
@@ -192,16 +200,16 @@ Eigen::MatrixXd edgeVotes(Builder& builder) {
 std::vector<OrthogonalityEdge> findEdges(Builder& builder) {
   const auto samples = samplesOf(builder);
   const Eigen::MatrixXd votes = edgeVotes(builder);
-  const double spacing = builder.cloud.spacing;
   std::vector<OrthogonalityEdge> edges;
   for (std::size_t a = 0; a < builder.clusters.size(); ++a) {
     for (std::size_t b = a + 1; b < builder.clusters.size(); ++b) {
       const Plane &plane_a = builder.clusters[a].plane, &plane_b = builder.clusters[b].plane;
       const double cosine = plane_a.normal().dot(plane_b.normal());
       if (std::abs(cosine) > std::sin(builder.params.orthogonality)) continue;
-      const double length = commonEdgeLength(builder.cloud, plane_a, samples[a], plane_b,
-                                             samples[b], builder.params.edge_reach * spacing);
-      if (length < builder.params.min_edge_length * spacing) continue;
+      const double length = commonEdgeLength(
+          builder.cloud, {plane_a, samples[a], builder.clusters[a].spacing},
+          {plane_b, samples[b], builder.clusters[b].spacing}, builder.params.edge_reach);
+      if (length < builder.params.min_edge_length) continue;
       edges.push_back({{static_cast<int>(a), static_cast<int>(b)},
                        votes(static_cast<Eigen::Index>(a), static_cast<Eigen::Index>(b))});
     }
@@ -232,7 +240,8 @@ PlaneGraph buildPlaneGraph(const OrientedCloud& cloud, const OppHypotheses& hypo
   assignAndFit(builder);  // the samples of dropped planes may support others
   PlaneGraph graph;
   for (const Cluster& cluster : builder.clusters) {
-    graph.nodes.push_back({cluster.plane, cluster.moments, cluster.votes});
+    graph.nodes.push_back(
+        {cluster.plane, cluster.moments, cluster.votes, cluster.reach, cluster.spacing});
   }
   graph.edges = findEdges(builder);
   return graph;

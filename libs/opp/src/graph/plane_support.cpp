@@ -107,33 +107,37 @@ SampleAssigner::SampleAssigner(const OrientedCloud& cloud, const SensorModel& se
   normals_.resize(count, 3);
   gates_.resize(count);
   weights_.reserve(cloud.size());
+  const SensorModel shown = sensor.withCorrelation(cloud.noise_correlation);
   for (std::size_t i = 0; i < cloud.size(); ++i) {
-    const double sigma = sensor.meanSigma(static_cast<double>(cloud.sigmas[i]),
-                                          static_cast<double>(cloud.weights[i]));
+    const double sigma = shown.meanSigma(static_cast<double>(cloud.sigmas[i]),
+                                         static_cast<double>(cloud.weights[i]));
     const auto row = static_cast<Eigen::Index>(i);
     points_.row(row) = cloud.points[i].transpose();
     normals_.row(row) = cloud.normals[i].transpose();
-    gates_[row] = static_cast<float>(params.noise_gate * sigma + params.flatness * cloud.spacing);
+    gates_[row] = static_cast<float>(params.noise_gate * sigma + params.flatness * cloud.extent(i));
     weights_.push_back(1.0 / (sigma * sigma));
   }
 }
 
 template <typename Visit>
-void SampleAssigner::forEachCandidate(const Plane& plane, const Visit& visit) const {
+void SampleAssigner::forEachCandidate(const LocalPlane& local, const Visit& visit) const {
   const float *x = points_.col(0).data(), *y = points_.col(1).data(), *z = points_.col(2).data();
   const float *nx = normals_.col(0).data(), *ny = normals_.col(1).data(),
               *nz = normals_.col(2).data();
-  const Eigen::Vector4f coefficients = plane.coefficients().cast<float>();
+  const Eigen::Vector4f coefficients = local.plane.coefficients().cast<float>();
+  const Eigen::Vector3f low = local.reach.min(), high = local.reach.max();
   const float a = coefficients[0], b = coefficients[1], c = coefficients[2], d = coefficients[3];
   const auto count = static_cast<std::size_t>(gates_.size());
   for (std::size_t i = 0; i < count; ++i) {
     const float distance = std::abs(a * x[i] + b * y[i] + c * z[i] + d);
     const float cosine = std::abs(a * nx[i] + b * ny[i] + c * nz[i]);
-    visit(i, distance, cosine > cos_normal_gate_);
+    const bool inside = (x[i] >= low.x()) & (x[i] <= high.x()) & (y[i] >= low.y()) &
+                        (y[i] <= high.y()) & (z[i] >= low.z()) & (z[i] <= high.z());
+    visit(i, distance, inside & (cosine > cos_normal_gate_));
   }
 }
 
-std::vector<int> SampleAssigner::assign(const std::vector<Plane>& planes) const {
+std::vector<int> SampleAssigner::assign(const std::vector<LocalPlane>& planes) const {
   std::vector<int> labels(static_cast<std::size_t>(gates_.size()), -1);
   std::vector<float> nearest(gates_.data(), gates_.data() + gates_.size());
   for (std::size_t p = 0; p < planes.size(); ++p) {
@@ -147,7 +151,7 @@ std::vector<int> SampleAssigner::assign(const std::vector<Plane>& planes) const 
   return labels;
 }
 
-std::vector<int> SampleAssigner::assignToFirst(const std::vector<Plane>& planes) const {
+std::vector<int> SampleAssigner::assignToFirst(const std::vector<LocalPlane>& planes) const {
   std::vector<int> labels(static_cast<std::size_t>(gates_.size()), -1);
   const float* gates = gates_.data();
   for (std::size_t p = planes.size(); p-- > 0;) {
@@ -169,12 +173,24 @@ std::vector<PointMoments> SampleAssigner::moments(const std::vector<int>& labels
   return moments;
 }
 
+SupportPatch leastSupport(const OrientedCloud& cloud, const GraphParams& params) {
+  return cloud.extents.empty() ? SupportPatch{params.min_area, params.min_width}
+                               : SupportPatch{params.detail_min_area, params.detail_min_width};
+}
+
+double meanExtent(const OrientedCloud& cloud, const std::vector<int>& samples) {
+  double sum = 0.0;
+  for (const int i : samples) sum += cloud.extent(static_cast<std::size_t>(i));
+  return samples.empty() ? 0.0 : sum / static_cast<double>(samples.size());
+}
+
 SupportPatch largestPatch(const OrientedCloud& cloud, const Plane& plane,
                           const std::vector<int>& samples) {
   if (samples.empty()) return {};
   const Eigen::Matrix<double, 3, 2> tangents = tangentBasis(plane.normal());
   const Eigen::Vector3d origin = pointOf(cloud, samples.front());
-  const double cell = 2.0 * cloud.spacing;
+  const double extent = meanExtent(cloud, samples);
+  const double cell = 2.0 * extent;
   std::vector<Eigen::Vector2d> coordinates;
   std::vector<Cell> cell_of, cells;
   for (const int i : samples) {
@@ -194,19 +210,20 @@ SupportPatch largestPatch(const OrientedCloud& cloud, const Plane& plane,
   const auto largest =
       std::max_element(spreads.begin(), spreads.end(),
                        [](const Spread& a, const Spread& b) { return a.count < b.count; });
-  return {largest->count * cloud.spacing * cloud.spacing, largest->width()};
+  return {largest->count, largest->width() / extent};
 }
 
-double commonEdgeLength(const OrientedCloud& cloud, const Plane& a, const std::vector<int>& on_a,
-                        const Plane& b, const std::vector<int>& on_b, double reach) {
-  const Eigen::Vector3d cross = a.normal().cross(b.normal());
+double commonEdgeLength(const OrientedCloud& cloud, const EdgeSide& a, const EdgeSide& b,
+                        double reach) {
+  const Eigen::Vector3d cross = a.plane.normal().cross(b.plane.normal());
   if (cross.norm() < std::numeric_limits<double>::epsilon()) return 0.0;
   const Eigen::Vector3d direction = cross.normalized();
-  const double cell = cloud.spacing;
-  const auto cells_a = cellsAlongLine(cloud, on_a, b, direction, reach, cell);
-  const auto cells_b = cellsAlongLine(cloud, on_b, a, direction, reach, cell);
-  return static_cast<double>(std::min(countNear(cells_a, cells_b), countNear(cells_b, cells_a))) *
-         cell;
+  const double cell = std::max(a.spacing, b.spacing);
+  const auto cells_a =
+      cellsAlongLine(cloud, a.samples, b.plane, direction, reach * a.spacing, cell);
+  const auto cells_b =
+      cellsAlongLine(cloud, b.samples, a.plane, direction, reach * b.spacing, cell);
+  return static_cast<double>(std::min(countNear(cells_a, cells_b), countNear(cells_b, cells_a)));
 }
 
 }  // namespace opp

@@ -55,9 +55,9 @@ class CornerFinder {
   CornerFinder(const OrientedCloud& cloud, const Primitives& scan, const CornerParams& params)
       : scan_(scan),
         params_(params),
-        spacing_(cloud.spacing),
         viewpoint_(cloud.viewpoint.cast<double>()),
-        samples_(samplesByPlane(cloud, scan)) {
+        samples_(samplesByPlane(cloud, scan)),
+        spacings_(spacingsOf(cloud, scan)) {
     const auto size = static_cast<Eigen::Index>(2 * scan.families.size());
     if (scan.normal_covariance.rows() != size || scan.normal_covariance.cols() != size) {
       throw std::invalid_argument("corners need the joint covariance of the families' normals");
@@ -103,10 +103,10 @@ class CornerFinder {
 
   std::uint16_t signatureOf(const Corner& corner) const {
     std::array<int, 12> counts{};
-    const double radius = params_.radius * spacing_;
-    const double margin = kAxisMargin * spacing_;
     for (int k = 0; k < 3; ++k) {
       const auto index = static_cast<std::size_t>(corner.planes[static_cast<std::size_t>(k)]);
+      const double radius = params_.radius * spacings_[index];
+      const double margin = kAxisMargin * spacings_[index];
       for (const Eigen::Vector3d& x : samples_[index]) {
         const Eigen::Vector3d offset = x - corner.position;
         if (offset.squaredNorm() > radius * radius) continue;
@@ -150,9 +150,9 @@ class CornerFinder {
 
   const Primitives& scan_;
   const CornerParams& params_;
-  double spacing_;
   Eigen::Vector3d viewpoint_;
   std::vector<std::vector<Eigen::Vector3d>> samples_;
+  std::vector<double> spacings_;  ///< of each plane's samples [m]
 };
 
 }  // namespace

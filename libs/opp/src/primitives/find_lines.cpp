@@ -98,8 +98,8 @@ class LineFinder {
   LineFinder(const OrientedCloud& cloud, const Primitives& scan, const LineParams& params)
       : scan_(scan),
         params_(params),
-        spacing_(cloud.spacing),
-        samples_(samplesByPlane(cloud, scan)) {}
+        samples_(samplesByPlane(cloud, scan)),
+        spacings_(spacingsOf(cloud, scan)) {}
 
   void addSegments(const OrthogonalityEdge& edge, std::vector<LineSegment>& segments) const {
     const auto a = static_cast<std::size_t>(edge.planes[0]);
@@ -107,26 +107,31 @@ class LineFinder {
     const PlanePrimitive &plane_a = scan_.planes.at(a), &plane_b = scan_.planes.at(b);
     const Eigen::Vector3d middle = 0.5 * (plane_a.moments.mean() + plane_b.moments.mean());
     const Line line = intersect(plane_a.plane, plane_b.plane, middle);
-    const double reach = params_.reach * spacing_, gap = params_.max_gap * spacing_;
-    const auto beside_a = besideLine(samples_[a], plane_b.plane, line, reach);
-    const auto beside_b = besideLine(samples_[b], plane_a.plane, line, reach);
-    for (Interval stretch : common(stretches(beside_a, gap), stretches(beside_b, gap))) {
-      if (stretch.high - stretch.low < params_.min_length * spacing_) continue;
+    const auto beside_a =
+        besideLine(samples_[a], plane_b.plane, line, params_.reach * spacings_[a]);
+    const auto beside_b =
+        besideLine(samples_[b], plane_a.plane, line, params_.reach * spacings_[b]);
+    const auto on_a = stretches(beside_a, params_.max_gap * spacings_[a]);
+    const auto on_b = stretches(beside_b, params_.max_gap * spacings_[b]);
+    const double spacing = std::min(spacings_[a], spacings_[b]);
+    for (Interval stretch : common(on_a, on_b)) {
+      if (stretch.high - stretch.low < params_.min_length * spacing) continue;
       LineSegment segment;
       segment.planes = edge.planes;
       segment.kind = kindOf(sidesOf(beside_a, stretch, params_.min_side_share),
                             sidesOf(beside_b, stretch, params_.min_side_share));
-      segment.start = endAt(line, stretch.low, edge.planes);
-      segment.end = endAt(line, stretch.high, edge.planes);
+      const double snap = params_.reach * std::max(spacings_[a], spacings_[b]);
+      segment.start = endAt(line, stretch.low, edge.planes, snap);
+      segment.end = endAt(line, stretch.high, edge.planes, snap);
       segments.push_back(segment);
     }
   }
 
  private:
   /// Point on the line, or the corner of both planes within reach of it.
-  Eigen::Vector3d endAt(const Line& line, double along, const std::array<int, 2>& planes) const {
+  Eigen::Vector3d endAt(const Line& line, double along, const std::array<int, 2>& planes,
+                        double nearest) const {
     const Eigen::Vector3d end = line.point + along * line.direction;
-    double nearest = params_.reach * spacing_;
     Eigen::Vector3d result = end;
     for (const Corner& corner : scan_.corners) {
       const auto has = [&](int plane) {
@@ -142,8 +147,8 @@ class LineFinder {
 
   const Primitives& scan_;
   const LineParams& params_;
-  double spacing_;
   std::vector<std::vector<Eigen::Vector3d>> samples_;
+  std::vector<double> spacings_;  ///< of each plane's samples [m]
 };
 
 }  // namespace

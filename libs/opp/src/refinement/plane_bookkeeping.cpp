@@ -33,6 +33,7 @@ void absorb(const PlaneFit& part, PlaneFit& whole) {
   whole.sums.merge(part.sums);
   whole.moments = whole.sums.moments();
   whole.slack = std::max(whole.slack, part.slack);
+  whole.reach.extend(part.reach);
   const Eigen::Vector3d normal = ownNormal(whole.moments.scatter(), whole.plane.normal());
   whole.plane = Plane::fromPointNormal(whole.moments.mean(), normal);
 }
@@ -58,7 +59,7 @@ std::vector<int> survivors(std::vector<PlaneFit>& fits, const RefinementParams& 
   std::vector<std::size_t> kept, first(count);  // first: least index of those merged into a plane
   std::vector<int> target(count, -1);
   for (const std::size_t k : order) {
-    if (fits[k].curved || fits[k].sums.support < params.min_support) continue;
+    if (fits[k].curved || fits[k].uncertain || fits[k].sums.support < params.min_support) continue;
     const auto same = std::find_if(kept.begin(), kept.end(), [&](std::size_t other) {
       return sameSurface(fits[other], fits[k], params);
     });
@@ -121,7 +122,7 @@ PlanePrimitive primitiveOf(const PlaneFit& fit, int family, const OrientedCloud&
   result.family = family;
   const SampleSums& sums = fit.sums;
   result.support = sums.support;
-  result.area = sums.support * cloud.spacing * cloud.spacing;
+  result.area = sums.area;
   result.rms = std::sqrt(sums.meanSquare());
   const Eigen::Vector3d& shared = scan.families[static_cast<std::size_t>(family)].normal;
   const double sign = shared.dot(result.plane.normal()) < 0.0 ? -1.0 : 1.0;

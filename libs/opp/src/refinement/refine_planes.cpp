@@ -13,6 +13,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 #include <utility>
 
@@ -44,8 +45,9 @@ class Refiner {
           weight > 0.0 ? std::sqrt(node.moments.squaredError(node.plane) / weight) : 0;
       fits_.emplace_back();
       fits_.back().plane = node.plane;
-      fits_.back().slack = std::max(rms, cloud.spacing);
+      fits_.back().slack = std::max(rms, node.spacing > 0.0 ? node.spacing : cloud.spacing);
       fits_.back().moments = node.moments;
+      fits_.back().reach = node.reach.isEmpty() ? anywhere() : node.reach.cast<double>();
     }
   }
 
@@ -59,6 +61,11 @@ class Refiner {
 
  private:
   using Index = std::size_t;
+
+  static Eigen::AlignedBox3d anywhere() {
+    constexpr double kFar = std::numeric_limits<double>::infinity();
+    return {Eigen::Vector3d::Constant(-kFar), Eigen::Vector3d::Constant(kFar)};
+  }
 
   /// Parallel planes, the groups with most information first.
   std::vector<ParallelGroup> groupsOf(const std::vector<std::vector<int>>& families) const {
@@ -123,11 +130,15 @@ class Refiner {
     return normals;
   }
 
-  NormalProblem normalProblem() const {
+  /// What the samples say about the normals; with `rims`, less what `PlaneFit::information` doubts.
+  NormalProblem normalProblem(bool rims = false) const {
     NormalProblem problem;
     for (const std::vector<int>& family : structure_.families) {
       Eigen::Matrix3d scatter = Eigen::Matrix3d::Zero();
-      for (const int plane : family) scatter += fits_[static_cast<Index>(plane)].moments.scatter();
+      for (const int plane : family) {
+        const PlaneFit& fit = fits_[static_cast<Index>(plane)];
+        scatter += rims ? fit.information(fit.plane.normal()) : fit.moments.scatter();
+      }
       problem.scatters.push_back(scatter);
     }
     problem.frames = structure_.frames;
@@ -142,6 +153,7 @@ class Refiner {
   bool restructure() {
     const std::size_t before = fits_.size();
     markCurved(samples_, labels_, params_, fits_);
+    markUncertain();
     dropAndMerge();
     const bool split = splitPlanes();
     PlaneStructure tested = findStructure(estimates(), edges_, params_);
@@ -174,10 +186,23 @@ class Refiner {
   std::vector<NormalEstimate> estimates() const {
     std::vector<NormalEstimate> result;
     for (const PlaneFit& fit : fits_) {
-      const Eigen::Matrix3d& scatter = fit.moments.scatter();
-      result.push_back({ownNormal(scatter, fit.plane.normal()), scatter});
+      const Eigen::Vector3d normal = ownNormal(fit.moments.scatter(), fit.plane.normal());
+      result.push_back({normal, fit.information(normal)});
     }
     return result;
+  }
+
+  /// Marks planes of whose direction neither their samples nor parallel or orthogonal planes tell
+  /// enough.
+  void markUncertain() {
+    const Eigen::MatrixXd covariance = normalCovariance(normalProblem(true), solution_.normals);
+    for (Index k = 0; k < fits_.size(); ++k) {
+      const Eigen::Index at = 2 * structure_.family_of[k];
+      const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> eigen(covariance.block<2, 2>(at, at),
+                                                                 Eigen::EigenvaluesOnly);
+      const double limit = params_.max_uncertainty * params_.max_uncertainty;
+      fits_[k].uncertain = eigen.eigenvalues()[1] > limit;
+    }
   }
 
   void dropAndMerge() {

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "refinement/sample_assignment.h"
 
+#include <Eigen/Eigenvalues>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -24,18 +26,21 @@ struct Match {
 
 /// Updates `best` with the plane of a group that is nearest to a point at `position` along the
 /// group's normal.
-void takeNearest(const ParallelGroup& group, double position, Match& best) {
-  // Members ascend: their distances fall to the nearest and rise after it.
+void takeNearest(const ParallelGroup& group, const Eigen::Vector3d& point,
+                 const std::vector<PlaneFit>& fits, Match& best) {
+  const double position = group.normal.dot(point);
   for (const ParallelGroup::Member& member : group.members) {
     const double distance = position - member.position;
-    if (std::abs(distance) < std::abs(best.distance)) best = {member.plane, distance};
-    if (distance < 0.0) return;
+    if (std::abs(distance) < std::abs(best.distance) && fits[member.plane].reach.contains(point)) {
+      best = {member.plane, distance};
+    }
   }
 }
 
 }  // namespace
 
 std::vector<WeightedSample> weightedSamples(const OrientedCloud& cloud, const SensorModel& sensor) {
+  const SensorModel shown = sensor.withCorrelation(cloud.noise_correlation);
   std::vector<WeightedSample> samples(cloud.size());
   for (std::size_t i = 0; i < cloud.size(); ++i) {
     WeightedSample& sample = samples[i];
@@ -44,7 +49,8 @@ std::vector<WeightedSample> weightedSamples(const OrientedCloud& cloud, const Se
     // Coordinates are rounded to float: no distance is better known than that.
     const double rounding = std::numeric_limits<float>::epsilon() * sample.point.norm();
     const double count = std::max(1.0, static_cast<double>(cloud.weights[i]));
-    const double sigma = sensor.meanSigma(static_cast<double>(cloud.sigmas[i]), count);
+    const double sigma = shown.meanSigma(static_cast<double>(cloud.sigmas[i]), count);
+    sample.area = cloud.extent(i) * cloud.extent(i);
     sample.variance = kLeastVariance + rounding * rounding + sigma * sigma;
   }
   return samples;
@@ -69,6 +75,7 @@ void SampleSums::merge(const SampleSums& other) {
   square_sum += other.square_sum;
   variance_sum += other.variance_sum;
   support += other.support;
+  area += other.area;
 }
 
 bool SampleSums::add(const WeightedSample& sample, double distance, double slack,
@@ -88,6 +95,7 @@ bool SampleSums::add(const WeightedSample& sample, double distance, double slack
   robust_weight += robust;
   square_sum += robust * square;
   variance_sum += robust * sample.variance;
+  area += sample.area;
   ++support;
   return true;
 }
@@ -103,6 +111,23 @@ double SampleSums::excess(double outlier_cutoff) const {
   const double chance = kChanceSigmas * std::sqrt(2.0 / support) * meanVariance();
   const double beyond = mean_square - meanVariance();
   return beyond > chance ? std::sqrt(beyond) : 0.0;
+}
+
+Eigen::Matrix3d PlaneFit::information(const Eigen::Vector3d& normal) const {
+  if (moments.empty() || sums.support == 0) return Eigen::Matrix3d::Zero();
+  const Eigen::Matrix<double, 3, 2> tangents = tangentBasis(normal);
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes(tangents.transpose() *
+                                                            moments.scatter() * tangents);
+  const double squared_extent = sums.area / sums.support;
+  Eigen::Vector2d known;
+  for (int k = 0; k < 2; ++k) {
+    const double points = std::max(0.0, axes.eigenvalues()[k]);
+    // w² = 12 variances.
+    const double rim = points > 0.0 ? squared_extent * moments.weight() / (16.0 * points) : 1.0;
+    known[k] = points / (1.0 + points * rim * rim);
+  }
+  const Eigen::Matrix<double, 3, 2> directions = tangents * axes.eigenvectors();
+  return directions * known.asDiagonal() * directions.transpose();
 }
 
 ParallelGroup makeGroup(const Eigen::Vector3d& normal, const std::vector<std::size_t>& planes,
@@ -134,7 +159,7 @@ void assignSamples(const std::vector<WeightedSample>& samples,
     Match best;
     for (const ParallelGroup& group : groups) {
       if (!(std::abs(group.normal.dot(sample.normal)) >= least_cosine)) continue;
-      takeNearest(group, group.normal.dot(sample.point), best);
+      takeNearest(group, sample.point, fits, best);
       if (std::abs(best.distance) < explained) break;
     }
     PlaneFit& fit = fits[best.plane];

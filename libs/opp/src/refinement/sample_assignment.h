@@ -18,6 +18,7 @@ struct WeightedSample {
   Eigen::Vector3d point;
   Eigen::Vector3d normal;
   double variance;  ///< of its offset: of n raw points whose errors are correlated [m²]
+  double area;      ///< [m²] of the surface that it stands for
 };
 
 std::vector<WeightedSample> weightedSamples(const OrientedCloud& cloud, const SensorModel& sensor);
@@ -31,6 +32,7 @@ struct SampleSums {
   double robust_weight = 0.0;                        ///< Σ ω
   double square_sum = 0.0;                           ///< Σ ω r² [m²]
   double variance_sum = 0.0;                         ///< Σ ω × variance of the sample [m²]
+  double area = 0.0;                                 ///< of all samples [m²]
   int support = 0;                                   ///< samples
 
   PointMoments moments() const;
@@ -49,8 +51,16 @@ struct PlaneFit {
   Plane plane;
   double slack = 0.0;  ///< [m] misfit beyond the sensor's noise; gates are wide while it is large
   SampleSums sums;
-  PointMoments moments;  ///< of the sums
-  bool curved = false;   ///< its samples' normals say that it is no plane
+  PointMoments moments;       ///< of the sums
+  bool curved = false;        ///< its samples' normals say that it is no plane
+  bool uncertain = false;     ///< its direction is not known
+  Eigen::AlignedBox3d reach;  ///< where its samples can be
+
+  /// What the samples say about the normal, as a scatter matrix [1/rad²] about `normal`. Samples at
+  /// the rim of a surface are averages that take in some of its neighbour: at a right angle they
+  /// are an eighth of their extent off. Those along one side of a strip of width w turn its fit by
+  /// 0.75 (extent/w)² rad, which counts as a standard deviation.
+  Eigen::Matrix3d information(const Eigen::Vector3d& normal) const;
 };
 
 /// Planes that share one normal, to be searched by offset.

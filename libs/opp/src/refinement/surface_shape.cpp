@@ -35,14 +35,16 @@ bool turns(const TurnSums& sums, const RefinementParams& params) {
   const Eigen::Matrix2d joint = sums.crossed / sums.count - tilt * place.transpose();
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes(spread);
   double turn = 0.0;
+  double scatter = sums.tilt_squares / sums.count - tilt.squaredNorm();
   for (int k = 0; k < 2; ++k) {
-    // Tilt per standard deviation of the place; an even strip is √12 standard deviations wide.
     const double deviation = std::sqrt(std::max(axes.eigenvalues()[k], 0.0));
     if (!(deviation > 0.0)) continue;
-    turn =
-        std::max(turn, std::sqrt(12.0) * (joint * axes.eigenvectors().col(k)).norm() / deviation);
+    // Tilt per standard deviation of the place; an even strip is √12 standard deviations wide.
+    const double explained = (joint * axes.eigenvectors().col(k)).norm() / deviation;
+    turn = std::max(turn, std::sqrt(12.0) * explained);
+    scatter -= explained * explained;
   }
-  const double scatter = std::max(0.0, sums.tilt_squares / sums.count - tilt.squaredNorm());
+  scatter = std::max(0.0, scatter);
   const double error = std::sqrt(12.0 * scatter / sums.count);
   return turn > params.max_turn && turn > params.test_sigmas * error;
 }
@@ -52,7 +54,7 @@ class Layers {
  public:
   Layers(const std::vector<WeightedSample>& samples, const std::vector<int>& labels, int label,
          const PlaneFit& fit)
-      : normal_(fit.plane.normal()) {
+      : normal_(fit.plane.normal()), reach_(fit.reach) {
     for (std::size_t i = 0; i < samples.size(); ++i) {
       if (labels[i] != label) continue;
       members_.push_back(&samples[i]);
@@ -94,6 +96,7 @@ class Layers {
       result[k].plane = Plane::fromPointNormal(moments_[k].mean(), normal_);
       result[k].sums = layers_[k];
       result[k].moments = moments_[k];
+      result[k].reach = reach_;
     }
     if (result[0].sums.support < result[1].sums.support) std::swap(result[0], result[1]);
     return result;
@@ -115,6 +118,7 @@ class Layers {
   }
 
   Eigen::Vector3d normal_;
+  Eigen::AlignedBox3d reach_;
   std::vector<const WeightedSample*> members_;
   std::vector<bool> upper_;
   std::array<SampleSums, 2> layers_;

@@ -23,8 +23,9 @@ double spacingForCount(const std::vector<Eigen::Vector3f>& points, std::size_t t
 /// joins the nearest earlier sample within `spacing` along the same surface (normals within
 /// `merge_angle`, offset explained by noise), else becomes a sample. A sample is the weighted mean
 /// of its entries, so parallel or crossing surfaces closer than `spacing` stay apart. O(entries).
+/// \param sample_of_entry unless null, becomes the sample that each entry joined.
 /// \throws std::invalid_argument if `spacing` is not positive and finite.
-OrientedCloud sampleEvenly(const OrientedCloud& dense, double spacing,
-                           const SamplingParams& params);
+OrientedCloud sampleEvenly(const OrientedCloud& dense, double spacing, const SamplingParams& params,
+                           std::vector<int>* sample_of_entry = nullptr);
 
 }  // namespace opp

@@ -7,7 +7,17 @@
 #include "opp/geometry/point_cloud.h"
 #include "opp/primitives/stage_timings.h"
 
+#include <cstdint>
+#include <vector>
+
 namespace opp {
+
+/// Samples of a scan and the patches that they were averaged from.
+struct ScanSurface {
+  OrientedCloud samples;
+  OrientedCloud patches;             ///< with extents; empty if points came with normals
+  std::vector<int> sample_of_patch;  ///< index into samples
+};
 
 /// Turns raw points into evenly spaced surface samples with normals (Sommer et al. 2020, V-b).
 ///
@@ -23,7 +33,15 @@ namespace opp {
 /// unless null.
 /// \throws std::invalid_argument if rows·cols or the number of normals does not fit the points, or
 /// a parameter is out of range.
+ScanSurface makeScanSurface(const PointCloud& cloud, const SensorModel& sensor,
+                            const SamplingParams& params, StageTimings* timings = nullptr);
+
+/// The samples of `makeScanSurface`.
 OrientedCloud makeOrientedCloud(const PointCloud& cloud, const SensorModel& sensor,
                                 const SamplingParams& params, StageTimings* timings = nullptr);
+
+/// Replaces the samples marked in `open` (one entry each) by their patches, which then follow the
+/// other samples. Returns where they begin. The surface keeps no patches. O(samples + patches).
+std::size_t splitSamples(ScanSurface& surface, const std::vector<std::uint8_t>& open);
 
 }  // namespace opp

@@ -4,6 +4,7 @@
 
 #include "opp/params/field.h"
 
+#include <algorithm>
 #include <cmath>
 #include <string_view>
 
@@ -19,7 +20,7 @@ struct SensorModel {
   double min_range = 0.3;
   double max_range = 6.0;
   /// Neighbouring raw points share part of their error (correlation window of structured light,
-  /// quantization, calibration): correlation coefficient ρ of any two of them.
+  /// quantization, calibration): correlation coefficient ρ of any two of them, at most.
   double noise_correlation = 0.1;
 
   /// Standard deviation of a measured range [m].
@@ -31,6 +32,13 @@ struct SensorModel {
   /// Standard deviation of the mean of `count` ≥ 1 neighbouring raw points of deviation `sigma`.
   double meanSigma(double sigma, double count) const {
     return sigma * std::sqrt((1.0 + (count - 1.0) * noise_correlation) / count);
+  }
+
+  /// The model for a cloud that shows a correlation of `measured`; < 0: it shows none.
+  SensorModel withCorrelation(double measured) const {
+    SensorModel model = *this;
+    if (measured >= 0.0) model.noise_correlation = std::min(noise_correlation, measured);
+    return model;
   }
 
   /// Standard deviation along a surface's normal of a point measured on it [m]: the part that grows
@@ -49,8 +57,9 @@ struct SensorModel {
       Field{"noise_quadratic", "1/m", 0.0, 0.1, "range noise that grows with range squared"});
     f(p.min_range, Field{"min_range", "m", 0.0, 100.0, "nearer returns are ignored"});
     f(p.max_range, Field{"max_range", "m", 0.1, 1000.0, "farther returns are ignored"});
-    f(p.noise_correlation, Field{"noise_correlation", "", 0.0, 1.0,
-                                 "correlation of the errors of neighbouring raw points"});
+    f(p.noise_correlation,
+      Field{"noise_correlation", "", 0.0, 1.0,
+            "correlation of the errors of neighbouring raw points; less if a cloud shows less"});
   }
 };
 

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "opp/cloud/oriented_cloud.h"
 #include "opp/cloud/sensor_model.h"
 #include "opp/detection/voting_params.h"
 #include "opp/geometry/plane.h"
@@ -18,6 +19,8 @@ struct PlaneHypothesis {
   Plane plane;                                       ///< n points to the viewpoint's side
   Eigen::Vector3d anchor = Eigen::Vector3d::Zero();  ///< on the plane, amid its voters
   double votes = 0.0;                                ///< voters within the noise of the plane
+  double reach = 0.0;    ///< [m] voters, and samples of the plane, are within it of the anchor
+  double spacing = 0.0;  ///< [m] of its voters
 };
 
 /// Two orthogonal hypotheses of one reference point (an OPP).
@@ -43,6 +46,11 @@ struct OppHypotheses {
 /// (≤ 0: all cores). O(size + N·K).
 /// \throws std::invalid_argument if a parameter is out of range.
 OppHypotheses detectOpps(const OrientedCloud& cloud, const SensorModel& sensor,
+                         const VotingParams& params, int threads = 1);
+
+/// As above; samples that lie on no plane of the wide neighbourhoods are split into their patches
+/// (`splitSamples`) before the narrow ones vote.
+OppHypotheses detectOpps(ScanSurface& surface, const SensorModel& sensor,
                          const VotingParams& params, int threads = 1);
 
 }  // namespace opp

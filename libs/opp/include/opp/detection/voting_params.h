@@ -14,12 +14,14 @@ namespace opp {
 /// points, 250 partners within 1 m, δ_n = 20°, bins of 10° and 8 cm.
 struct VotingParams {
   static constexpr std::string_view kSection = "voting";
-  int reference_points = 250;                ///< N
-  int narrow_reference_points = 250;         ///< see visit
-  int round_size = 50;                       ///< see visit
-  int partners = 300;                        ///< K
-  double neighbourhood = 22.0;               ///< τ_d / spacing
-  double narrowing = 3.0;                    ///< see visit
+  int reference_points = 250;         ///< N
+  int narrow_reference_points = 250;  ///< see visit
+  int round_size = 50;                ///< see visit
+  int partners = 300;                 ///< K
+  double neighbourhood = 22.0;        ///< τ_d / spacing
+  double narrowing = 3.0;             ///< see visit
+  /// A square of 8 × 8 samples has nearly half of them at its rim.
+  int detail_samples = 64;
   double normal_tolerance = degToRad(20.0);  ///< δ_n
   int theta_bins = 18;                       ///< see visit
   int rho_bins = 25;                         ///< see visit
@@ -43,6 +45,9 @@ struct VotingParams {
       Field{"neighbourhood", "", 2.0, 1e4, "partners are nearer than this many sample spacings"});
     f(p.narrowing, Field{"narrowing", "", 1.0, 100.0,
                          "the further reference points look this many times less far"});
+    f(p.detail_samples,
+      Field{"detail_samples", "", 0, 1e9,
+            "samples of planes with fewer are split into patches, as those of no plane"});
     f(p.normal_tolerance, Field{"normal_tolerance", "rad", 0.01, kPi / 4.0,
                                 "error allowed in the angle between two normals"});
     f(p.theta_bins, Field{"theta_bins", "", 4, 180, "bins of the direction of a partner plane"});

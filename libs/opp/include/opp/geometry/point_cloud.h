@@ -27,7 +27,8 @@ struct PointCloud {
   bool hasNormals() const { return !normals.empty(); }
 };
 
-/// Evenly spaced surface samples of one scan: the input of all detection and registration.
+/// Surface samples of one scan: the input of all detection and registration. Evenly spaced, but for
+/// detail: where planes are small, samples are closer (`extents`).
 /// All vectors have the same length. All entries are finite.
 struct OrientedCloud {
   std::vector<Eigen::Vector3f> points;   ///< [m], about `spacing` apart
@@ -35,11 +36,18 @@ struct OrientedCloud {
   std::vector<float>
       sigmas;  ///< [m] standard deviation of one raw point's offset along the normal, here
   std::vector<float> weights;  ///< number of raw points this sample stands for, ≥ 1
+  std::vector<float> extents;  ///< [m] edge of the square of surface that a sample stands for, at
+                               ///< most `spacing`; empty: `spacing` for all
   Eigen::Vector3f viewpoint =
       Eigen::Vector3f::Zero();  ///< the sensor's origin, in the points' frame [m]
   double spacing = 0.0;         ///< d_min of the sampling [m]
+  /// Correlation of the errors of neighbouring raw points, as this cloud shows it; < 0: unknown.
+  double noise_correlation = -1.0;
 
   std::size_t size() const { return points.size(); }
+  double extent(std::size_t i) const {
+    return extents.empty() ? spacing : static_cast<double>(extents[i]);
+  }
 };
 
 }  // namespace opp

@@ -6,6 +6,8 @@
 #include "opp/geometry/point_moments.h"
 #include "opp/primitives/primitives.h"
 
+#include <Eigen/Geometry>
+
 #include <vector>
 
 namespace opp {
@@ -15,6 +17,8 @@ struct PlaneNode {
   Plane plane;           ///< n points to the viewpoint's side
   PointMoments moments;  ///< of the samples that support it, weights 1/σ² [1/m²]
   double votes = 0.0;    ///< coplanar and orthogonal votes of the reference points merged into it
+  Eigen::AlignedBox3f reach;  ///< where its samples can be; empty: anywhere
+  double spacing = 0.0;       ///< mean extent of its samples [m]
 };
 
 /// Planes and their orthogonality, as voting and clustering give them (Sommer et al. 2020, III-c).

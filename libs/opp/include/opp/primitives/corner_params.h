@@ -14,7 +14,7 @@ struct CornerParams {
   /// A corner may be hidden (virtual), but each plane must come this near to it.
   double radius = 5.0;
   /// A quarter disk of that radius holds π/4·radius² samples; this share of them makes it occupied.
-  double min_fill = 0.2;
+  double min_fill = 0.1;
 
   template <typename Self, typename F>
   static void visit(Self&& p, F&& f) {

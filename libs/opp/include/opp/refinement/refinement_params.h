@@ -24,10 +24,12 @@ struct RefinementParams {
   double systematic_angle = degToRad(0.25);
   /// Normals of a cylinder turn across the strip that passes for a plane; those of a plane scatter
   /// by a few degrees, but not with the place.
-  double max_turn = degToRad(20.0);
+  double max_turn = degToRad(10.0);
+  /// Three standard deviations are then what a normal of a single patch may have as one.
+  double max_uncertainty = degToRad(5.0 / 3.0);
   double test_sigmas = 3.0;               ///< see visit
   double max_correction = degToRad(2.5);  ///< see visit
-  int min_support = 10;                   ///< see visit
+  int min_support = 8;                    ///< see visit
   int coarse_samples = 2000;              ///< see visit
   int max_iterations = 12;                ///< see visit
 
@@ -41,6 +43,9 @@ struct RefinementParams {
                                 "error of angles between planes that more points do not reduce"});
     f(p.max_turn, Field{"max_turn", "rad", 0.01, degToRad(90.0),
                         "surfaces whose normals turn by more across their extent are curved"});
+    f(p.max_uncertainty,
+      Field{"max_uncertainty", "rad", 1e-3, 0.5,
+            "planes whose normal is known worse (standard deviation) are dropped"});
     f(p.test_sigmas, Field{"test_sigmas", "", 1.0, 10.0,
                            "parallel and orthogonal are kept if the data deviate by fewer sigmas"});
     f(p.max_correction, Field{"max_correction", "rad", 0.0, 0.3,
