@@ -101,7 +101,9 @@ std::size_t countNear(const std::vector<std::int64_t>& cells,
 
 SampleAssigner::SampleAssigner(const OrientedCloud& cloud, const SensorModel& sensor,
                                const GraphParams& params)
-    : cloud_(cloud), cos_normal_gate_(static_cast<float>(std::cos(params.normal_gate))) {
+    : cloud_(cloud),
+      blocks_(cloud.points),
+      cos_normal_gate_(static_cast<float>(std::cos(params.normal_gate))) {
   const auto count = static_cast<Eigen::Index>(cloud.size());
   points_.resize(count, 3);
   normals_.resize(count, 3);
@@ -111,11 +113,16 @@ SampleAssigner::SampleAssigner(const OrientedCloud& cloud, const SensorModel& se
   for (std::size_t i = 0; i < cloud.size(); ++i) {
     const double sigma = shown.meanSigma(static_cast<double>(cloud.sigmas[i]),
                                          static_cast<double>(cloud.weights[i]));
-    const auto row = static_cast<Eigen::Index>(i);
+    weights_.push_back(1.0 / (sigma * sigma));
+  }
+  for (Eigen::Index row = 0; row < count; ++row) {
+    const std::size_t i = blocks_.order()[static_cast<std::size_t>(row)];
     points_.row(row) = cloud.points[i].transpose();
     normals_.row(row) = cloud.normals[i].transpose();
-    gates_[row] = static_cast<float>(params.noise_gate * sigma + params.flatness * cloud.extent(i));
-    weights_.push_back(1.0 / (sigma * sigma));
+    const double gate =
+        params.noise_gate / std::sqrt(weights_[i]) + params.flatness * cloud.extent(i);
+    largest_gate_ = std::max(largest_gate_, gate);
+    gates_[row] = static_cast<float>(gate);
   }
 }
 
@@ -127,14 +134,24 @@ void SampleAssigner::forEachCandidate(const LocalPlane& local, const Visit& visi
   const Eigen::Vector4f coefficients = local.plane.coefficients().cast<float>();
   const Eigen::Vector3f low = local.reach.min(), high = local.reach.max();
   const float a = coefficients[0], b = coefficients[1], c = coefficients[2], d = coefficients[3];
-  const auto count = static_cast<std::size_t>(gates_.size());
-  for (std::size_t i = 0; i < count; ++i) {
-    const float distance = std::abs(a * x[i] + b * y[i] + c * z[i] + d);
-    const float cosine = std::abs(a * nx[i] + b * ny[i] + c * nz[i]);
-    const bool inside = (x[i] >= low.x()) & (x[i] <= high.x()) & (y[i] >= low.y()) &
-                        (y[i] <= high.y()) & (z[i] >= low.z()) & (z[i] <= high.z());
-    visit(i, distance, inside & (cosine > cos_normal_gate_));
+  blocks_.visitNear(
+      local.plane, local.reach, largest_gate_, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+          const float distance = std::abs(a * x[i] + b * y[i] + c * z[i] + d);
+          const float cosine = std::abs(a * nx[i] + b * ny[i] + c * nz[i]);
+          const bool inside = (x[i] >= low.x()) & (x[i] <= high.x()) & (y[i] >= low.y()) &
+                              (y[i] <= high.y()) & (z[i] >= low.z()) & (z[i] <= high.z());
+          visit(i, distance, inside & (cosine > cos_normal_gate_));
+        }
+      });
+}
+
+std::vector<int> SampleAssigner::inCloudOrder(const std::vector<int>& labels) const {
+  std::vector<int> result(labels.size());
+  for (std::size_t row = 0; row < labels.size(); ++row) {
+    result[blocks_.order()[row]] = labels[row];
   }
+  return result;
 }
 
 std::vector<int> SampleAssigner::assign(const std::vector<LocalPlane>& planes) const {
@@ -148,7 +165,7 @@ std::vector<int> SampleAssigner::assign(const std::vector<LocalPlane>& planes) c
       labels[i] = nearer ? plane : labels[i];
     });
   }
-  return labels;
+  return inCloudOrder(labels);
 }
 
 std::vector<int> SampleAssigner::assignToFirst(const std::vector<LocalPlane>& planes) const {
@@ -160,7 +177,7 @@ std::vector<int> SampleAssigner::assignToFirst(const std::vector<LocalPlane>& pl
       labels[i] = parallel & (distance < gates[i]) ? plane : labels[i];
     });
   }
-  return labels;
+  return inCloudOrder(labels);
 }
 
 std::vector<PointMoments> SampleAssigner::moments(const std::vector<int>& labels,

@@ -8,6 +8,8 @@
 #include "opp/geometry/point_moments.h"
 #include "opp/graph/graph_params.h"
 
+#include "cloud/sample_blocks.h"
+
 #include <Eigen/Geometry>
 
 #include <vector>
@@ -25,7 +27,7 @@ class SampleAssigner {
     Eigen::AlignedBox3f reach;
   };
 
-  /// Index of the plane of each sample; −1: none. O(samples × planes), without branches.
+  /// Index of the plane of each sample; −1: none. O(samples near the planes + blocks × planes).
   std::vector<int> assign(const std::vector<LocalPlane>& planes) const;
   /// Index of the first plane whose gates each sample passes; −1: none. With the planes in order of
   /// strength: what each plane explains and no stronger one does.
@@ -34,12 +36,17 @@ class SampleAssigner {
   std::vector<PointMoments> moments(const std::vector<int>& labels, std::size_t planes) const;
 
  private:
-  /// visit(sample, distance, normals parallel) for each sample; the compiler vectorizes it.
+  /// visit(row, distance, normals parallel) for each sample in a block near the plane; the compiler
+  /// vectorizes it.
   template <typename Visit>
   void forEachCandidate(const LocalPlane& plane, const Visit& visit) const;
+  /// From the order of the blocks to that of the cloud.
+  std::vector<int> inCloudOrder(const std::vector<int>& labels) const;
 
   const OrientedCloud& cloud_;
+  SampleBlocks blocks_;  ///< rows of the arrays are in their order
   float cos_normal_gate_;
+  double largest_gate_ = 0.0;
   Eigen::ArrayX3f points_, normals_;
   Eigen::ArrayXf gates_;
   std::vector<double> weights_;

@@ -5,11 +5,11 @@
 #include "opp/refinement/find_structure.h"
 #include "opp/refinement/solve_normals.h"
 
+#include "refinement/candidates.h"
+#include "refinement/joint_problem.h"
 #include "refinement/plane_bookkeeping.h"
 #include "refinement/sample_assignment.h"
 #include "refinement/surface_shape.h"
-
-#include <Eigen/Eigenvalues>
 
 #include <algorithm>
 #include <cmath>
@@ -27,8 +27,18 @@ constexpr double kRest = 0.05;
 constexpr int kCoarsePasses = 5;
 /// Planes with fewer samples in that part wait for the full passes.
 constexpr int kLeastCoarseSupport = 10;
+/// Joint passes before planes, families and edges are tested: a pass leaves a fifth of the error.
+constexpr int kRoughPasses = 3;
 /// Families and edges are tested again after the constrained passes; a change restarts them.
 constexpr int kMaxRestructurings = 3;
+
+std::vector<WeightedSample> inOrder(const std::vector<WeightedSample>& samples,
+                                    const std::vector<std::uint32_t>& order) {
+  std::vector<WeightedSample> result;
+  result.reserve(samples.size());
+  for (const std::uint32_t i : order) result.push_back(samples[i]);
+  return result;
+}
 
 class Refiner {
  public:
@@ -36,7 +46,8 @@ class Refiner {
           const RefinementParams& params)
       : cloud_(cloud),
         params_(params),
-        samples_(weightedSamples(cloud, sensor)),
+        blocks_(cloud.points),
+        samples_(inOrder(weightedSamples(cloud, sensor), blocks_.order())),
         edges_(graph.edges),
         labels_(cloud.size(), -1) {
     for (const PlaneNode& node : graph.nodes) {
@@ -53,9 +64,12 @@ class Refiner {
 
   Primitives refine() {
     fitAlone();
-    structure_ = findStructure(estimates(), edges_, params_);
-    fitTogether();
-    for (int k = 0; k < kMaxRestructurings && restructure(); ++k) fitTogether();
+    structure_ = findStructure(normalEstimates(fits_), edges_, params_);
+    // Planes that will be dropped or merged are no reason to wait until all others rest.
+    fitTogether(kRoughPasses);
+    for (int k = 0; k < kMaxRestructurings && restructure(); ++k) fitTogether(kRoughPasses);
+    if (!converged_) fitTogether(params_.max_iterations);
+    if (restructure()) fitTogether(params_.max_iterations);
     return collect();
   }
 
@@ -71,10 +85,9 @@ class Refiner {
   std::vector<ParallelGroup> groupsOf(const std::vector<std::vector<int>>& families) const {
     std::vector<std::pair<double, ParallelGroup>> groups;
     for (const std::vector<int>& family : families) {
-      const Eigen::Vector3d normal = fits_[static_cast<Index>(family.front())].plane.normal();
       double weight = 0.0;
       for (const int plane : family) weight += fits_[static_cast<Index>(plane)].moments.weight();
-      groups.emplace_back(weight, makeGroup(normal, {family.begin(), family.end()}, fits_));
+      groups.emplace_back(weight, ParallelGroup(family.begin(), family.end()));
     }
     std::stable_sort(groups.begin(), groups.end(),
                      [](const auto& a, const auto& b) { return a.first > b.first; });
@@ -89,8 +102,10 @@ class Refiner {
     for (Index k = 0; k < fits_.size(); ++k) single.push_back({static_cast<int>(k)});
     const Index stride = std::max<Index>(
         1, samples_.size() / static_cast<Index>(std::max(1, params_.coarse_samples)));
+    const Candidates candidates =
+        findCandidates(blocks_, samples_, groupsOf(single), fits_, params_, stride);
     for (int pass = 0; pass < kCoarsePasses; ++pass) {
-      assignSamples(samples_, groupsOf(single), params_, stride, fits_, labels_);
+      assignSamples(samples_, candidates, params_, stride, fits_, labels_);
       bool rest = true;
       for (PlaneFit& fit : fits_) {
         if (fit.sums.support < kLeastCoarseSupport) continue;
@@ -101,10 +116,13 @@ class Refiner {
   }
 
   /// Fits all planes jointly, with shared and orthogonal normals.
-  void fitTogether() {
+  void fitTogether(int max_passes) {
     solve();
-    for (int pass = 0; pass < params_.max_iterations; ++pass) {
-      assignSamples(samples_, groupsOf(structure_.families), params_, 1, fits_, labels_);
+    for (PlaneFit& fit : fits_) fit.rests = false;
+    const Candidates candidates =
+        findCandidates(blocks_, samples_, groupsOf(structure_.families), fits_, params_, 1);
+    for (int pass = 0; pass < max_passes; ++pass) {
+      assignSamples(samples_, candidates, params_, 1, fits_, labels_);
       converged_ = solve();
       if (converged_) return;
     }
@@ -112,7 +130,8 @@ class Refiner {
 
   /// Solves the normals from the moments and moves the planes; true if they hardly moved.
   bool solve() {
-    solution_ = solveNormals(normalProblem(), familyNormals());
+    solution_ =
+        solveNormals(normalProblem(structure_, fits_, params_), familyNormals(structure_, fits_));
     bool rest = solution_.converged;
     for (Index f = 0; f < structure_.families.size(); ++f) {
       for (const int plane : structure_.families[f]) {
@@ -122,41 +141,14 @@ class Refiner {
     return rest;
   }
 
-  std::vector<Eigen::Vector3d> familyNormals() const {
-    std::vector<Eigen::Vector3d> normals;
-    for (const std::vector<int>& family : structure_.families) {
-      normals.push_back(fits_[static_cast<Index>(family.front())].plane.normal());
-    }
-    return normals;
-  }
-
-  /// What the samples say about the normals; with `rims`, less what `PlaneFit::information` doubts.
-  NormalProblem normalProblem(bool rims = false) const {
-    NormalProblem problem;
-    for (const std::vector<int>& family : structure_.families) {
-      Eigen::Matrix3d scatter = Eigen::Matrix3d::Zero();
-      for (const int plane : family) {
-        const PlaneFit& fit = fits_[static_cast<Index>(plane)];
-        scatter += rims ? fit.information(fit.plane.normal()) : fit.moments.scatter();
-      }
-      problem.scatters.push_back(scatter);
-    }
-    problem.frames = structure_.frames;
-    const double variance = params_.systematic_angle * params_.systematic_angle;
-    for (const std::array<int, 2>& edge : structure_.soft_edges) {
-      problem.soft_edges.push_back({edge, 1.0 / std::max(variance, kLeastAngleVariance)});
-    }
-    return problem;
-  }
-
   /// Tests families and edges again; true if planes or structure changed and need another fit.
   bool restructure() {
     const std::size_t before = fits_.size();
     markCurved(samples_, labels_, params_, fits_);
-    markUncertain();
+    markUncertain(structure_, solution_.normals, params_, fits_);
     dropAndMerge();
-    const bool split = splitPlanes();
-    PlaneStructure tested = findStructure(estimates(), edges_, params_);
+    const bool split = splitPlanes(samples_, labels_, params_, fits_, edges_);
+    PlaneStructure tested = findStructure(normalEstimates(fits_), edges_, params_);
     const bool changed =
         fits_.size() != before || split || tested.families != structure_.families ||
         tested.frames != structure_.frames || tested.soft_edges != structure_.soft_edges;
@@ -180,29 +172,8 @@ class Refiner {
     const double squared_change =
         fit.moments.weight() * shift * shift + turn.dot(fit.moments.scatter() * turn);
     const double spread = std::sqrt(fit.sums.meanVariance() + fit.slack * fit.slack);
-    return squared_change <= kRest * kRest && slack - fit.slack <= 0.1 * spread;
-  }
-
-  std::vector<NormalEstimate> estimates() const {
-    std::vector<NormalEstimate> result;
-    for (const PlaneFit& fit : fits_) {
-      const Eigen::Vector3d normal = ownNormal(fit.moments.scatter(), fit.plane.normal());
-      result.push_back({normal, fit.information(normal)});
-    }
-    return result;
-  }
-
-  /// Marks planes of whose direction neither their samples nor parallel or orthogonal planes tell
-  /// enough.
-  void markUncertain() {
-    const Eigen::MatrixXd covariance = normalCovariance(normalProblem(true), solution_.normals);
-    for (Index k = 0; k < fits_.size(); ++k) {
-      const Eigen::Index at = 2 * structure_.family_of[k];
-      const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> eigen(covariance.block<2, 2>(at, at),
-                                                                 Eigen::EigenvaluesOnly);
-      const double limit = params_.max_uncertainty * params_.max_uncertainty;
-      fits_[k].uncertain = eigen.eigenvalues()[1] > limit;
-    }
+    fit.rests = squared_change <= kRest * kRest && slack - fit.slack <= 0.1 * spread;
+    return fit.rests;
   }
 
   void dropAndMerge() {
@@ -213,33 +184,14 @@ class Refiner {
     }
   }
 
-  /// Gives planes that were fitted between two parallel surfaces one to each. Both halves inherit
-  /// the edges.
-  bool splitPlanes() {
-    const std::size_t count = fits_.size();
-    for (std::size_t k = 0; k < count; ++k) {
-      if (fits_[k].slack <= 0.0) continue;
-      auto layers = splitLayers(samples_, labels_, static_cast<int>(k), fits_[k], params_);
-      if (!layers) continue;
-      fits_[k] = (*layers)[0];
-      const int half = static_cast<int>(fits_.size());
-      fits_.push_back((*layers)[1]);
-      const std::vector<OrthogonalityEdge> edges = edges_;
-      for (const OrthogonalityEdge& edge : edges) {
-        const auto [a, b] = edge.planes;
-        if (a == static_cast<int>(k)) edges_.push_back({{b, half}, edge.votes});
-        if (b == static_cast<int>(k)) edges_.push_back({{a, half}, edge.votes});
-      }
-    }
-    return fits_.size() != count;
-  }
-
   Primitives collect() const {
     Primitives result;
     result.edges = structure_.edges;
-    result.labels = labels_;
+    result.labels.resize(labels_.size());
+    for (Index i = 0; i < labels_.size(); ++i) result.labels[blocks_.order()[i]] = labels_[i];
     result.converged = converged_ || fits_.empty();
-    result.normal_covariance = normalCovariance(normalProblem(), solution_.normals);
+    result.normal_covariance =
+        normalCovariance(normalProblem(structure_, fits_, params_), solution_.normals);
     for (Index f = 0; f < structure_.families.size(); ++f) {
       result.families.push_back({solution_.normals[f], structure_.families[f]});
     }
@@ -251,7 +203,8 @@ class Refiner {
 
   const OrientedCloud& cloud_;
   const RefinementParams& params_;
-  std::vector<WeightedSample> samples_;
+  SampleBlocks blocks_;
+  std::vector<WeightedSample> samples_;  ///< in the order of the blocks, as labels_
   std::vector<OrthogonalityEdge> edges_;
   std::vector<int> labels_;
   std::vector<PlaneFit> fits_;

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "refinement/sample_assignment.h"
 
+#include "refinement/candidates.h"
+
 #include <Eigen/Eigenvalues>
 
 #include <algorithm>
@@ -18,24 +20,6 @@ constexpr double kChanceSigmas = 2.0;
 constexpr double kExplainedSigmas = 2.0;
 /// (1e-9 m)²: below any sensor's noise, and no division by zero at the origin.
 constexpr double kLeastVariance = 1e-18;
-
-struct Match {
-  std::size_t plane = 0;
-  double distance = std::numeric_limits<double>::infinity();  ///< signed, along the group's normal
-};
-
-/// Updates `best` with the plane of a group that is nearest to a point at `position` along the
-/// group's normal.
-void takeNearest(const ParallelGroup& group, const Eigen::Vector3d& point,
-                 const std::vector<PlaneFit>& fits, Match& best) {
-  const double position = group.normal.dot(point);
-  for (const ParallelGroup::Member& member : group.members) {
-    const double distance = position - member.position;
-    if (std::abs(distance) < std::abs(best.distance) && fits[member.plane].reach.contains(point)) {
-      best = {member.plane, distance};
-    }
-  }
-}
 
 }  // namespace
 
@@ -130,44 +114,77 @@ Eigen::Matrix3d PlaneFit::information(const Eigen::Vector3d& normal) const {
   return directions * known.asDiagonal() * directions.transpose();
 }
 
-ParallelGroup makeGroup(const Eigen::Vector3d& normal, const std::vector<std::size_t>& planes,
-                        const std::vector<PlaneFit>& fits) {
-  ParallelGroup group{normal, {}};
-  for (const std::size_t index : planes) {
-    const Plane& plane = fits[index].plane;
-    const double sign = plane.normal().dot(normal) < 0.0 ? -1.0 : 1.0;
-    group.members.push_back({-sign * plane.d(), index});
+namespace {
+
+/// Planes that rest, as all their rivals do.
+std::vector<std::uint8_t> frozenPlanes(const Candidates& candidates,
+                                       const std::vector<PlaneFit>& fits) {
+  std::vector<std::uint8_t> frozen(fits.size(), 0);
+  for (std::size_t k = 0; k < fits.size(); ++k) {
+    const auto& rivals = candidates.rivals[k];
+    const auto rests = [&](std::uint32_t plane) { return fits[plane].rests; };
+    frozen[k] = fits[k].rests && std::all_of(rivals.begin(), rivals.end(), rests) ? 1 : 0;
   }
-  std::stable_sort(group.members.begin(), group.members.end(),
-                   [](const auto& a, const auto& b) { return a.position < b.position; });
-  return group;
+  return frozen;
 }
 
-void assignSamples(const std::vector<WeightedSample>& samples,
-                   const std::vector<ParallelGroup>& groups, const RefinementParams& params,
-                   std::size_t stride, std::vector<PlaneFit>& fits, std::vector<int>& labels) {
-  if (fits.empty()) return;
-  for (PlaneFit& fit : fits) {
+struct Match {
+  std::uint32_t plane = 0;
+  double distance = std::numeric_limits<double>::infinity();
+};
+
+Match matchOf(const WeightedSample& sample, const Candidates::Entry* begin,
+              const Candidates::Entry* end, const std::vector<PlaneFit>& fits,
+              double least_cosine) {
+  const double explained = kExplainedSigmas * std::sqrt(sample.variance);
+  Match best;
+  std::uint32_t group = 0;
+  for (const Candidates::Entry* entry = begin; entry != end; ++entry) {
+    if (entry->group != group && best.distance < explained) break;
+    group = entry->group;
+    const Plane& plane = fits[entry->plane].plane;
+    const double distance = std::abs(plane.signedDistance(sample.point));
+    if (distance >= best.distance) continue;
+    if (!(std::abs(plane.normal().dot(sample.normal)) >= least_cosine)) continue;
+    best = {entry->plane, distance};
+  }
+  return best;
+}
+
+}  // namespace
+
+void assignSamples(const std::vector<WeightedSample>& samples, const Candidates& candidates,
+                   const RefinementParams& params, std::size_t stride, std::vector<PlaneFit>& fits,
+                   std::vector<int>& labels) {
+  const std::vector<std::uint8_t> frozen = frozenPlanes(candidates, fits);
+  for (std::size_t k = 0; k < fits.size(); ++k) {
+    if (frozen[k] != 0) continue;
+    PlaneFit& fit = fits[k];
     SampleSums cleared;
     cleared.origin = fit.moments.empty() ? fit.plane.project(cleared.origin) : fit.moments.mean();
     fit.sums = cleared;
   }
   const double least_cosine = std::cos(params.normal_gate);
   for (std::size_t i = 0; i < samples.size(); i += stride) {
-    const WeightedSample& sample = samples[i];
-    const double explained = kExplainedSigmas * std::sqrt(sample.variance);
-    Match best;
-    for (const ParallelGroup& group : groups) {
-      if (!(std::abs(group.normal.dot(sample.normal)) >= least_cosine)) continue;
-      takeNearest(group, sample.point, fits, best);
-      if (std::abs(best.distance) < explained) break;
+    const Candidates::Entry* begin = candidates.entries.data() + candidates.begin[i];
+    const Candidates::Entry* end = candidates.entries.data() + candidates.begin[i + 1];
+    Match match;
+    if (std::any_of(begin, end, [&](const auto& entry) { return frozen[entry.plane] != 0; })) {
+      // All candidates rest: nothing changes.
+      if (labels[i] < 0 || frozen[static_cast<std::size_t>(labels[i])] != 0) continue;
+      match.plane = static_cast<std::uint32_t>(labels[i]);
+      match.distance = std::abs(fits[match.plane].plane.signedDistance(samples[i].point));
+    } else {
+      match = matchOf(samples[i], begin, end, fits, least_cosine);
     }
-    PlaneFit& fit = fits[best.plane];
-    const bool matched = std::isfinite(best.distance) &&
-                         fit.sums.add(sample, best.distance, fit.slack, params.outlier_cutoff);
-    labels[i] = matched ? static_cast<int>(best.plane) : -1;
+    const bool matched = std::isfinite(match.distance) &&
+                         fits[match.plane].sums.add(samples[i], match.distance,
+                                                    fits[match.plane].slack, params.outlier_cutoff);
+    labels[i] = matched ? static_cast<int>(match.plane) : -1;
   }
-  for (PlaneFit& fit : fits) fit.moments = fit.sums.moments();
+  for (std::size_t k = 0; k < fits.size(); ++k) {
+    if (frozen[k] == 0) fits[k].moments = fits[k].sums.moments();
+  }
 }
 
 }  // namespace opp

@@ -9,6 +9,7 @@
 #include "opp/refinement/refinement_params.h"
 
 #include <cstddef>
+#include <cstdint>
 #include <vector>
 
 namespace opp {
@@ -52,6 +53,7 @@ struct PlaneFit {
   double slack = 0.0;  ///< [m] misfit beyond the sensor's noise; gates are wide while it is large
   SampleSums sums;
   PointMoments moments;       ///< of the sums
+  bool rests = false;         ///< the last step hardly moved it
   bool curved = false;        ///< its samples' normals say that it is no plane
   bool uncertain = false;     ///< its direction is not known
   Eigen::AlignedBox3d reach;  ///< where its samples can be
@@ -63,26 +65,15 @@ struct PlaneFit {
   Eigen::Matrix3d information(const Eigen::Vector3d& normal) const;
 };
 
-/// Planes that share one normal, to be searched by offset.
-struct ParallelGroup {
-  struct Member {
-    double position = 0.0;  ///< of the plane along the group's normal [m]
-    std::size_t plane = 0;
-  };
-  Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();
-  std::vector<Member> members;  ///< ascending positions
-};
-
-/// Group of `planes` (indices into fits), all parallel to `normal`.
-ParallelGroup makeGroup(const Eigen::Vector3d& normal, const std::vector<std::size_t>& planes,
-                        const std::vector<PlaneFit>& fits);
+struct Candidates;
 
 /// Gives every `stride`-th sample to a plane whose normal agrees, if it is no outlier there, and
 /// sums it up in that plane's fit (IV-b (1), (2)): to the nearest of the first group (the one with
 /// most support) that explains it, so that no small plane grows askew into a large one; else to the
-/// nearest of all. Labels of the other samples stay.
-void assignSamples(const std::vector<WeightedSample>& samples,
-                   const std::vector<ParallelGroup>& groups, const RefinementParams& params,
-                   std::size_t stride, std::vector<PlaneFit>& fits, std::vector<int>& labels);
+/// nearest of all. Labels of the other samples stay. A plane that rests, as all its rivals do,
+/// keeps its samples and sums.
+void assignSamples(const std::vector<WeightedSample>& samples, const Candidates& candidates,
+                   const RefinementParams& params, std::size_t stride, std::vector<PlaneFit>& fits,
+                   std::vector<int>& labels);
 
 }  // namespace opp

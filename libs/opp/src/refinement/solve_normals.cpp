@@ -4,6 +4,8 @@
 
 #include "opp/geometry/plane.h"
 
+#include "refinement/normal_components.h"
+
 #include <Eigen/Cholesky>
 #include <Eigen/Geometry>
 #include <Eigen/SVD>
@@ -160,8 +162,15 @@ Normals retract(const NormalProblem& problem, const Normals& normals, const Eige
   return moved;
 }
 
-NormalSolution solveNormals(const NormalProblem& problem, const Normals& initial) {
-  check(problem, initial.size());
+namespace {
+
+Normals partOf(const Normals& normals, const NormalComponent& component) {
+  Normals part;
+  for (const std::size_t k : component.normals) part.push_back(normals[k]);
+  return part;
+}
+
+NormalSolution solveJointly(const NormalProblem& problem, const Normals& initial) {
   NormalSolution solution;
   solution.normals = initial;
   solution.converged = initial.empty();
@@ -191,8 +200,7 @@ NormalSolution solveNormals(const NormalProblem& problem, const Normals& initial
   return solution;
 }
 
-Eigen::MatrixXd normalCovariance(const NormalProblem& problem, const Normals& normals) {
-  check(problem, normals.size());
+Eigen::MatrixXd jointCovariance(const NormalProblem& problem, const Normals& normals) {
   const Layout layout = layoutOf(problem);
   Eigen::MatrixXd information = linearize(problem, normals).information;
   information.diagonal().array() += kPriorInformation;
@@ -205,6 +213,38 @@ Eigen::MatrixXd normalCovariance(const NormalProblem& problem, const Normals& no
         tangentBasis(normals[index]).transpose() * jacobian;
   }
   return tangent_from_parameters * information.llt().solve(tangent_from_parameters.transpose());
+}
+
+}  // namespace
+
+NormalSolution solveNormals(const NormalProblem& problem, const Normals& initial) {
+  check(problem, initial.size());
+  NormalSolution solution{initial, true};
+  for (const NormalComponent& component : normalComponents(problem)) {
+    const NormalSolution part = solveJointly(component.problem, partOf(initial, component));
+    solution.converged = solution.converged && part.converged;
+    for (std::size_t k = 0; k < component.normals.size(); ++k) {
+      solution.normals[component.normals[k]] = part.normals[k];
+    }
+  }
+  return solution;
+}
+
+Eigen::MatrixXd normalCovariance(const NormalProblem& problem, const Normals& normals) {
+  check(problem, normals.size());
+  const auto size = static_cast<Eigen::Index>(2 * normals.size());
+  Eigen::MatrixXd covariance = Eigen::MatrixXd::Zero(size, size);
+  for (const NormalComponent& component : normalComponents(problem)) {
+    const Eigen::MatrixXd part = jointCovariance(component.problem, partOf(normals, component));
+    for (std::size_t k = 0; k < component.normals.size(); ++k) {
+      for (std::size_t l = 0; l < component.normals.size(); ++l) {
+        covariance.block<2, 2>(static_cast<Eigen::Index>(2 * component.normals[k]),
+                               static_cast<Eigen::Index>(2 * component.normals[l])) =
+            part.block<2, 2>(static_cast<Eigen::Index>(2 * k), static_cast<Eigen::Index>(2 * l));
+      }
+    }
+  }
+  return covariance;
 }
 
 }  // namespace opp

@@ -17,6 +17,9 @@ namespace {
 /// 2.7 and a uniform distribution 3.5; two that do not overlap have 4 and more.
 constexpr double kSeparation = 4.5;
 constexpr int kMaxSplitSteps = 20;
+/// Layers stand apart at once, cut at their common mean: what is this far from it after the first
+/// cut is one layer.
+constexpr double kHopeless = 3.0;
 
 /// Sums of the regression of normals on places, both in the plane's tangent coordinates.
 struct TurnSums {
@@ -67,6 +70,7 @@ class Layers {
     bool changed = true;
     for (int step = 0; step < kMaxSplitSteps && changed; ++step) {
       fit();
+      if (!(separation() > kHopeless)) break;
       const double middle = 0.5 * (positionOf(0) + positionOf(1));
       changed = false;
       for (std::size_t i = 0; i < members_.size(); ++i) {
@@ -82,12 +86,7 @@ class Layers {
     for (const SampleSums& layer : layers_) {
       if (layer.support < params.min_support) return false;
     }
-    const double gap = positionOf(1) - positionOf(0);
-    double squares = 0.0;
-    for (const PointMoments& moments : moments_) {
-      squares += normal_.dot(moments.scatter() * normal_) / moments.weight();
-    }
-    return gap > kSeparation * std::sqrt(0.5 * squares);
+    return separation() > kSeparation;
   }
 
   std::array<PlaneFit, 2> fits() const {
@@ -103,6 +102,15 @@ class Layers {
   }
 
  private:
+  /// Distance of the layers over the standard deviation within them; NaN if one is empty.
+  double separation() const {
+    double squares = 0.0;
+    for (const PointMoments& moments : moments_) {
+      squares += normal_.dot(moments.scatter() * normal_) / moments.weight();
+    }
+    return (positionOf(1) - positionOf(0)) / std::sqrt(0.5 * squares);
+  }
+
   double positionOf(std::size_t layer) const { return normal_.dot(moments_[layer].mean()); }
 
   void fit() {
@@ -157,6 +165,27 @@ std::optional<std::array<PlaneFit, 2>> splitLayers(const std::vector<WeightedSam
   layers.separate();
   if (!layers.distinct(params)) return std::nullopt;
   return layers.fits();
+}
+
+bool splitPlanes(const std::vector<WeightedSample>& samples, const std::vector<int>& labels,
+                 const RefinementParams& params, std::vector<PlaneFit>& fits,
+                 std::vector<OrthogonalityEdge>& edges) {
+  const std::size_t count = fits.size();
+  for (std::size_t k = 0; k < count; ++k) {
+    if (fits[k].slack <= 0.0) continue;
+    auto layers = splitLayers(samples, labels, static_cast<int>(k), fits[k], params);
+    if (!layers) continue;
+    fits[k] = (*layers)[0];
+    const int half = static_cast<int>(fits.size());
+    fits.push_back((*layers)[1]);
+    const std::vector<OrthogonalityEdge> before = edges;
+    for (const OrthogonalityEdge& edge : before) {
+      const auto [a, b] = edge.planes;
+      if (a == static_cast<int>(k)) edges.push_back({{b, half}, edge.votes});
+      if (b == static_cast<int>(k)) edges.push_back({{a, half}, edge.votes});
+    }
+  }
+  return fits.size() != count;
 }
 
 }  // namespace opp

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "opp/primitives/primitives.h"
 #include "opp/refinement/refinement_params.h"
 
 #include "refinement/sample_assignment.h"
@@ -24,5 +25,11 @@ std::optional<std::array<PlaneFit, 2>> splitLayers(const std::vector<WeightedSam
                                                    const std::vector<int>& labels, int label,
                                                    const PlaneFit& fit,
                                                    const RefinementParams& params);
+
+/// Replaces planes that `splitLayers` divides by their halves: the larger takes the plane's place,
+/// the other is appended; both inherit the edges. True if there was one.
+bool splitPlanes(const std::vector<WeightedSample>& samples, const std::vector<int>& labels,
+                 const RefinementParams& params, std::vector<PlaneFit>& fits,
+                 std::vector<OrthogonalityEdge>& edges);
 
 }  // namespace opp
