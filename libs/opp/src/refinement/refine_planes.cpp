@@ -56,7 +56,8 @@ class Refiner {
           weight > 0.0 ? std::sqrt(node.moments.squaredError(node.plane) / weight) : 0;
       fits_.emplace_back();
       fits_.back().plane = node.plane;
-      fits_.back().slack = std::max(rms, node.spacing > 0.0 ? node.spacing : cloud.spacing);
+      // Samples of a clustered node lie within their gates; a rough one may be off by a spacing.
+      fits_.back().slack = node.spacing > 0.0 ? rms : std::max(rms, cloud.spacing);
       fits_.back().moments = node.moments;
       fits_.back().reach = node.reach.isEmpty() ? anywhere() : node.reach.cast<double>();
     }
