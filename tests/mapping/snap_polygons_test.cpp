@@ -42,6 +42,20 @@ int verticesOnTheLine(const PlanarMapPlane& plane, const Eigen::Isometry3d& room
   return count;
 }
 
+TEST(SnapPolygons, ANarrowStripKeepsItsWidth) {
+  // The front of a board, 3 cm high, between two lines that are both within `snap` of its outline.
+  PlanarMap map;
+  map.planes.resize(3);
+  for (int id = 0; id < 3; ++id) map.planes[static_cast<std::size_t>(id)].id = id;
+  map.planes[0].plane = Plane::fromPointNormal({0, 0, 0}, {-1, 0, 0});
+  map.planes[0].polygons = {{{{0, 0, 0.001}, {0, 0, 0.029}, {0, 0.9, 0.029}, {0, 0.9, 0.001}}, {}}};
+  map.lines = {{0, {0, 1}, {0, 0, 0.03}, {0, 0.9, 0.03}, LineKind::kConvex},
+               {1, {0, 2}, {0, 0, 0}, {0, 0.9, 0}, LineKind::kConvex}};
+  snapPolygons(map, PlanarParams());
+  ASSERT_EQ(map.planes[0].polygons.size(), 1U);
+  EXPECT_NEAR(map.planes[0].area, 0.9 * 0.03, 1e-7);
+}
+
 TEST(SnapPolygons, NeighboursShareTheirEdge) {
   test::Random random(1);
   for (int k = 0; k < 50; ++k) {

@@ -11,6 +11,7 @@
 #include <cmath>
 #include <limits>
 #include <stdexcept>
+#include <utility>
 
 namespace opp::mapping {
 namespace {
@@ -115,6 +116,28 @@ std::vector<Eigen::Vector3d> lifted(const Ring2d& ring, const PlaneFrame& frame)
   return vertices;
 }
 
+/// A polygon with its vertices moved to the targets, in the parts that this leaves; as it was if it
+/// leaves none.
+std::vector<PlanarPolygon> snappedPolygon(const PlanarPolygon& polygon, const PlaneFrame& frame,
+                                          const Targets& targets, const PlanarParams& params,
+                                          const Geos& geos) {
+  const Eigen::Vector3d& normal = frame.plane().normal();
+  // A strip must not be flattened to a line.
+  const double reach = std::min(params.snap, kSnapShare * widthOf(polygon.outer, normal));
+  Polygon2d flat{snappedRing(polygon.outer, frame, targets, reach), {}};
+  for (const auto& hole : polygon.holes) {
+    flat.holes.push_back(snappedRing(hole, frame, targets, reach));
+  }
+  const double min_area = std::min(params.min_area, kKeptShare * areaOf({polygon}, normal));
+  std::vector<PlanarPolygon> result;
+  for (const Polygon2d& part : partsOf(flat, min_area, geos)) {
+    result.push_back({lifted(part.outer, frame), {}});
+    for (const Ring2d& hole : part.holes) result.back().holes.push_back(lifted(hole, frame));
+  }
+  if (result.empty()) result.push_back(polygon);
+  return result;
+}
+
 }  // namespace
 
 void snapPolygons(PlanarMap& map, const PlanarParams& params) {
@@ -125,23 +148,10 @@ void snapPolygons(PlanarMap& map, const PlanarParams& params) {
     if (targets.empty() || plane.polygons.empty()) continue;
     std::vector<PlanarPolygon> polygons;
     for (const PlanarPolygon& polygon : plane.polygons) {
-      // A strip must not be flattened to a line.
-      const double width = widthOf(polygon.outer, plane.plane.normal());
-      const double reach = std::min(params.snap, kSnapShare * width);
-      Polygon2d flat{snappedRing(polygon.outer, frame, targets, reach), {}};
-      for (const auto& hole : polygon.holes) {
-        flat.holes.push_back(snappedRing(hole, frame, targets, reach));
-      }
-      const double min_area =
-          std::min(params.min_area, kKeptShare * areaOf({polygon}, plane.plane.normal()));
-      for (const Polygon2d& part : partsOf(flat, min_area, geos)) {
-        polygons.push_back({lifted(part.outer, frame), {}});
-        for (const Ring2d& hole : part.holes) {
-          polygons.back().holes.push_back(lifted(hole, frame));
-        }
+      for (PlanarPolygon& part : snappedPolygon(polygon, frame, targets, params, geos)) {
+        polygons.push_back(std::move(part));
       }
     }
-    if (polygons.empty()) continue;
     plane.polygons = std::move(polygons);
     plane.area = areaOf(plane.polygons, plane.plane.normal());
     plane.centroid = centroidOf(plane.polygons, plane.plane.normal());
