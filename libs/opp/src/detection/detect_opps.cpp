@@ -65,8 +65,12 @@ class Detector {
     const Eigen::Vector3d anchor = sample.point.cast<double>() + fit.mean;
     Plane plane = Plane::fromPointNormal(anchor, fit.plane.normal());
     if (plane.signedDistance(scene_.viewpoint) < 0.0) plane = plane.flipped();
+    // Where detail is looked for, noise alone may blur layers.
+    const double half = 0.5 * scene_.spacing;
+    const double resolution =
+        scene_.detail ? std::min(half, static_cast<double>(sample.gate)) : half;
     found.planes.push_back(
-        {plane, anchor, static_cast<double>(fit.votes), scene_.radius, scene_.spacing});
+        {plane, anchor, static_cast<double>(fit.votes), scene_.radius, resolution});
     return static_cast<int>(found.planes.size()) - 1;
   }
 
@@ -123,8 +127,9 @@ std::vector<std::uint8_t> voteWide(const OrientedCloud& cloud, int least, const 
                                    int threads, OppHypotheses& found) {
   const std::vector<VotingSample> samples = votingSamples(cloud, 0, sensor, params);
   OpenSamples open(samples, std::vector<std::uint8_t>(samples.size(), 1), params.normal_tolerance);
-  const VotingScene scene(samples, cloud.viewpoint, params, params.neighbourhood * cloud.spacing,
-                          cloud.spacing);
+  VotingScene scene(samples, cloud.viewpoint, params, params.neighbourhood * cloud.spacing,
+                    cloud.spacing);
+  scene.detail = least > 0;
   detectInRounds(scene, thresholds, threads, open, found);
   open.reopen(least);
   return open.flags();
@@ -159,7 +164,7 @@ std::vector<Level> levelsOf(const std::vector<VotingSample>& samples,
 /// Planes that fill little of the wide neighbourhood get few of its votes: what is left over votes
 /// again among its nearest. All at once: few partners make poor planes, which must not close the
 /// samples of better ones.
-void voteNarrow(const std::vector<Level>& levels, const Eigen::Vector3f& viewpoint,
+void voteNarrow(const std::vector<Level>& levels, const Eigen::Vector3f& viewpoint, bool detail,
                 const VotingParams& params, const VoteThresholds& thresholds, int threads,
                 OppHypotheses& found) {
   for (const Level& level : levels) {
@@ -167,8 +172,9 @@ void voteNarrow(const std::vector<Level>& levels, const Eigen::Vector3f& viewpoi
     const OpenSamples open(level.samples, level.open, params.normal_tolerance);
     if (open.empty()) continue;
     const double extent = level.meanExtent();
-    const VotingScene scene(level.samples, viewpoint, params,
-                            params.neighbourhood / params.narrowing * extent, extent);
+    VotingScene scene(level.samples, viewpoint, params,
+                      params.neighbourhood / params.narrowing * extent, extent);
+    scene.detail = detail;
     std::vector<std::uint8_t> taken(level.samples.size(), 0);
     const auto references = open.take(scene.grid.order(), params.narrow_reference_points, taken);
     append(detectAtAll(scene, thresholds, references, threads), found);
@@ -194,8 +200,8 @@ OppHypotheses detectOpps(ScanSurface& surface, const SensorModel& sensor,
     open.assign(surface.samples.size() - begin, 1);
   }
   const auto samples = votingSamples(surface.samples, begin, sensor, params);
-  voteNarrow(levelsOf(samples, open, spacing), surface.samples.viewpoint, params, thresholds,
-             threads, found);
+  voteNarrow(levelsOf(samples, open, spacing), surface.samples.viewpoint, detail, params,
+             thresholds, threads, found);
   return found;
 }
 

@@ -10,8 +10,7 @@ namespace opp {
 namespace {
 
 bool samePlane(const PlaneHypothesis& a, const PlaneHypothesis& b, double cosine) {
-  // Half the least distance of parallel surfaces that the samples can tell apart.
-  const double reach = 0.5 * std::min(a.spacing, b.spacing);
+  const double reach = std::min(a.resolution, b.resolution);
   return std::abs(a.plane.normal().dot(b.plane.normal())) > cosine &&
          std::abs(a.plane.signedDistance(b.anchor)) < reach &&
          std::abs(b.plane.signedDistance(a.anchor)) < reach;

@@ -12,7 +12,7 @@
 namespace opp {
 
 /// For each hypothesis the index of the strongest one that is the same plane (its leader): each
-/// one's anchor lies within half a spacing of the other's plane (of their spacings the lesser), and
+/// one's anchor lies within the resolution of the other's plane (of both the lesser), and
 /// the normals differ by less than `angle` [rad], signs aside. Sommer et al. 2020, III-c.
 /// O(hypotheses × leaders).
 struct GatheredHypotheses {

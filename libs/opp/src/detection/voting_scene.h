@@ -37,8 +37,9 @@ struct VotingScene {
   VotingScene(const std::vector<VotingSample>& samples, const Eigen::Vector3f& viewpoint,
               const VotingParams& params, double radius, double spacing);
   const VotingParams& params;
-  double radius;   ///< τ_d [m]
-  double spacing;  ///< of the samples [m]
+  double radius;        ///< τ_d [m]
+  double spacing;       ///< of the samples [m]
+  bool detail = false;  ///< surfaces nearer than a spacing are to be told apart
   NeighbourhoodGrid grid;
   std::vector<VotingSample> samples;  ///< in the grid's order: partners lie side by side
   Eigen::Vector3d viewpoint;

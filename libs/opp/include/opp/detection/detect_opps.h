@@ -20,7 +20,8 @@ struct PlaneHypothesis {
   Eigen::Vector3d anchor = Eigen::Vector3d::Zero();  ///< on the plane, amid its voters
   double votes = 0.0;                                ///< voters within the noise of the plane
   double reach = 0.0;    ///< [m] voters, and samples of the plane, are within it of the anchor
-  double spacing = 0.0;  ///< [m] of its voters
+  /// [m] Parallel surfaces twice as far apart are told apart by their samples' noise and spacing.
+  double resolution = 0.0;
 };
 
 /// Two orthogonal hypotheses of one reference point (an OPP).
