@@ -23,8 +23,8 @@ struct RefinementParams {
   /// calibrated structured-light cameras show; near 0 for a simulated or ideal sensor.
   double systematic_angle = degToRad(0.25);
   /// Normals of a cylinder turn across the strip that passes for a plane; those of a plane scatter
-  /// by a few degrees, but not with the place.
-  double max_turn = degToRad(10.0);
+  /// by a few degrees, but not with the place. Three standard deviations of a patch's normal.
+  double max_turn = degToRad(15.0);
   /// Three standard deviations are then what a normal of a single patch may have as one.
   double max_uncertainty = degToRad(5.0 / 3.0);
   double test_sigmas = 3.0;               ///< see visit
