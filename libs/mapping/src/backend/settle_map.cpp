@@ -26,7 +26,7 @@ void optimize(MapState& map, int first_free, const BackendParams& params) {
 void settleMap(MapState& map, int first_free, const MapperParams& params) {
   if (map.keyframes.size() < 2) return;
   optimize(map, first_free, params.backend);
-  if (mergeLandmarks(map, params.registration.plane_gate_sigmas) > 0)
+  if (mergeLandmarks(map, params.backend.kernel_width) > 0)
     optimize(map, first_free, params.backend);
 }
 

@@ -58,7 +58,8 @@ std::optional<PlaceMatch> matchPlace(const MapState& map, int keyframe, const Sc
       PlaceMatch result = describe(map, keyframe, match);
       result.variance = viewVariance(covarianceOf(match.information), keyframeOf(map, keyframe));
       // What the scan leaves open is still where it was expected, which proves nothing.
-      if (result.variance > std::pow(params.loop.agree_translation, 2)) return std::nullopt;
+      constexpr double kSigmas = 3.0;
+      if (kSigmas * std::sqrt(result.variance) > params.loop.agree_translation) return std::nullopt;
       return result;
     }
   }

@@ -7,9 +7,10 @@
 namespace opp::mapping {
 
 /// Joins plane landmarks that have turned out to be one surface: they face the same way, their
-/// supports touch, and one plane explains the samples of both as well as a scan's plane must fit a
-/// landmark to be taken for it
-/// (`gate_sigmas`, see RegistrationParams::plane_gate_sigmas). Of two, the older stays; the other
+/// supports touch, and one plane explains the samples of both to within `gate_sigmas` (root mean
+/// square): so well that no pair loses its influence on the map (`BackendParams::kernel_width`). A
+/// laxer gate takes a board for the wall behind it, and keyframes before bare walls slide along
+/// them to make up for it. Of two, the older stays; the other
 /// keeps its id but has no observations any more. Returns how many were joined. O(planes²) plus one
 /// fit per near pair.
 int mergeLandmarks(MapState& map, double gate_sigmas);
