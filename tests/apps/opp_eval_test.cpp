@@ -232,7 +232,8 @@ TEST_F(OppEval, SynpebAgainstItselfIsAllCorrectAndMergedPlanesAreOneUnderSegment
     if (label == second) label = static_cast<int>(largest);
   }
   writeLabeledPly(folder_ / "merged.ply", merged.cloud, merged.labels);
-  for (const auto& counts : evaluate((folder_ / "merged.ply").string()).at("thresholds")) {
+  const auto of_merged = evaluate((folder_ / "merged.ply").string());
+  for (const auto& counts : of_merged.at("thresholds")) {
     EXPECT_EQ(counts.at("correct"), regions - 2);
     EXPECT_EQ(counts.at("under_segmented"), 1);
     EXPECT_EQ(counts.at("over_segmented"), 0);

@@ -113,10 +113,11 @@ TEST(OccupancyMap, KnowsHitsMissesAndTheUnseen) {
 TEST(OccupancyMap, PassesOverWhatCannotBeInserted) {
   const float nan = std::numeric_limits<float>::quiet_NaN();
   OccupancyMap map{OccupancyParams()};
-  map.insertScans({{{{nan, 0.0F, 0.0F}, {1e6F, 0.0F, 0.0F}, {1.0F, 0.0F, 0.0F}}, {}},
-                   {{{1.0F, 0.0F, 0.0F}}, {nan, 0.0F, 0.0F}},
-                   {}},
-                  1);
+  map.insertScans(
+      {{{{nan, 0.0F, 0.0F}, {1e6F, 0.0F, 0.0F}, {1.0F, 0.0F, 0.0F}}, {0.0F, 0.0F, 0.0F}},
+       {{{1.0F, 0.0F, 0.0F}}, {nan, 0.0F, 0.0F}},
+       {{}, {1e30F, 0.0F, 0.0F}}},
+      1);
   EXPECT_EQ(map.pointsPassedOver(), 3U);
   EXPECT_TRUE(map.occupancyAt({1.01, 0.01, 0.01}).has_value());
 }

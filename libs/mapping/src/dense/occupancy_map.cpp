@@ -152,7 +152,7 @@ std::size_t OccupancyMap::pointsPassedOver() const { return impl_->points_passed
 
 std::optional<double> OccupancyMap::occupancyAt(const Eigen::Vector3d& point_in_map) const {
   octomap::OcTreeKey key;
-  if (!point_in_map.allFinite() ||
+  if (!isInGrid(impl_->grid, point_in_map) ||
       !impl_->grid.coordToKeyChecked(point_in_map.x(), point_in_map.y(), point_in_map.z(), key)) {
     return std::nullopt;
   }

@@ -38,6 +38,16 @@ class BlockCollector {
   std::size_t last_ = 0;
 };
 
+}  // namespace
+
+bool isInGrid(const octomap::OcTree& grid, const Eigen::Vector3d& point) {
+  // Keys have 16 bits, half of them for negative coordinates.
+  constexpr double kHalfSide = 32768.0;
+  return (point.array().abs() < kHalfSide * grid.getResolution()).all();
+}
+
+namespace {
+
 /// Centres of the voxels that hold points, in the order of their first point.
 std::vector<octomap::point3d> endpointVoxels(const octomap::OcTree& grid, const OccupancyScan& scan,
                                              std::size_t& passed_over) {
@@ -45,7 +55,8 @@ std::vector<octomap::point3d> endpointVoxels(const octomap::OcTree& grid, const 
   std::vector<octomap::point3d> ends;
   for (const Eigen::Vector3f& point : scan.points_in_map) {
     octomap::OcTreeKey key;
-    if (!point.allFinite() || !grid.coordToKeyChecked({point.x(), point.y(), point.z()}, key)) {
+    if (!isInGrid(grid, point.cast<double>()) ||
+        !grid.coordToKeyChecked({point.x(), point.y(), point.z()}, key)) {
       ++passed_over;
       continue;
     }
@@ -86,7 +97,7 @@ ScanVoxels castRays(const octomap::OcTree& grid, const OccupancyScan& scan, doub
   const octomap::point3d origin(scan.origin_in_map.x(), scan.origin_in_map.y(),
                                 scan.origin_in_map.z());
   octomap::OcTreeKey key;
-  if (!scan.origin_in_map.allFinite() || !grid.coordToKeyChecked(origin, key)) {
+  if (!isInGrid(grid, scan.origin_in_map.cast<double>()) || !grid.coordToKeyChecked(origin, key)) {
     result.points_passed_over = scan.points_in_map.size();
     return result;
   }

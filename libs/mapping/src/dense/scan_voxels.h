@@ -41,6 +41,10 @@ struct ScanVoxels {
   std::size_t points_passed_over = 0;
 };
 
+/// Whether the grid has a voxel for a point; false if it is not finite. Octomap itself converts
+/// coordinates to `int` first, which is undefined far outside.
+bool isInGrid(const octomap::OcTree& grid, const Eigen::Vector3d& point);
+
 /// The voxels that octomap's computeDiscreteUpdate finds for this scan: each voxel with a point is
 /// occupied and is the end of one ray; voxels on the way are free unless occupied.
 /// `grid`: gives resolution and bounds only; its contents are not used.
