@@ -5,13 +5,13 @@
 #include "opp/geometry/constants.h"
 #include "opp/mapping/registration/align_globally.h"
 
+#include "registration/observability.h"
 #include "registration/scan_model.h"
 #include "registration/verify_pose.h"
 
 #include <Eigen/Eigenvalues>
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <utility>
 
@@ -67,19 +67,15 @@ bool excludesHalfTurn(const PosePrior& prior) {
   return kPi * kPi * rotation.eigenvalues()[0] >= kClearly;
 }
 
-double largestSigma(const Matrix6d& information, int first) {
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> part(
-      information.inverse().block<3, 3>(first, first), Eigen::EigenvaluesOnly);
-  return std::sqrt(std::max(part.eigenvalues()[2], 0.0));
-}
-
 }  // namespace
 
 /// Whether a prediction says enough to look for the body in the same map: repeating rooms and
 /// symmetric halls offer other places.
 bool Tracker::guides(const PosePrior& predicted) const {
-  return excludesHalfTurn(predicted) && largestSigma(predicted.information, 3) <=
-                                            params_.frontend.max_gap * params_.frontend.speed;
+  const Matrix6d covariance = predicted.information.inverse();
+  const double farthest = params_.frontend.max_gap * params_.frontend.speed;
+  return excludesHalfTurn(predicted) &&
+         largestVariance(covariance.bottomRightCorner<3, 3>()) <= farthest * farthest;
 }
 
 TrackResult Tracker::track(const ScanFeatures& scan,
@@ -115,7 +111,6 @@ TrackResult Tracker::track(const ScanFeatures& scan,
 TrackResult Tracker::localize(const ScanFeatures& scan, const PosePrior& predicted,
                               const PosePrior& moved, const Keyframe& newest) const {
   TrackResult best;
-  const PosePrior last = motion_.lastPose(scan.timestamp);
   const auto better = [&](const PosePrior& prior) {
     MatchResult match = matchScan(scan, *local_map_, prior, params_.registration);
     TrackOutcome outcome = outcomeOf(match, scan, moved, newest);
@@ -135,9 +130,9 @@ TrackResult Tracker::localize(const ScanFeatures& scan, const PosePrior& predict
   better(predicted);
   // What is open with a prediction is so without.
   if (best.localized() || best.outcome == TrackOutcome::kUnobserved) return best;
-  better(last);
+  better(moved);
   if (best.localized()) return best;
-  if (const auto start = relocalize(scan, last, newest)) better(*start);
+  if (const auto start = relocalize(scan, moved, newest)) better(*start);
   return best;
 }
 
@@ -154,14 +149,12 @@ TrackOutcome Tracker::outcomeOf(const MatchResult& match, const ScanFeatures& sc
   // A wrong pose can agree with a good part of a map: the floor fits at many places.
   if (!convincing(match) && contradicts(match.map_from_body, scan, newest))
     return TrackOutcome::kContradicted;
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> rotation(
-      match.covariance.topLeftCorner<3, 3>(), Eigen::EigenvaluesOnly);
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> translation(
-      match.covariance.bottomRightCorner<3, 3>(), Eigen::EigenvaluesOnly);
   const double max_rotation = params_.frontend.max_drift_rotation;
   const double max_translation = params_.frontend.max_drift_translation;
-  const bool known = rotation.eigenvalues()[2] <= max_rotation * max_rotation &&
-                     translation.eigenvalues()[2] <= max_translation * max_translation;
+  const bool known =
+      largestVariance(match.covariance.topLeftCorner<3, 3>()) <= max_rotation * max_rotation &&
+      largestVariance(match.covariance.bottomRightCorner<3, 3>()) <=
+          max_translation * max_translation;
   return known ? TrackOutcome::kLocalized : TrackOutcome::kUnobserved;
 }
 

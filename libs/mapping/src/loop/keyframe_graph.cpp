@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "opp/mapping/loop/keyframe_graph.h"
 
-#include <Eigen/Eigenvalues>
+#include "registration/observability.h"
 
 #include <algorithm>
 #include <functional>
@@ -17,13 +17,9 @@ double leverOf(const Keyframe& keyframe) {
 }
 
 double viewVariance(const Matrix6d& covariance, const Keyframe& keyframe) {
-  const auto largest = [](const Eigen::Matrix3d& part) {
-    return Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(part, Eigen::EigenvaluesOnly)
-        .eigenvalues()[2];
-  };
   const double lever = leverOf(keyframe);
-  return largest(covariance.bottomRightCorner<3, 3>()) +
-         lever * lever * largest(covariance.topLeftCorner<3, 3>());
+  return largestVariance(covariance.bottomRightCorner<3, 3>()) +
+         lever * lever * largestVariance(covariance.topLeftCorner<3, 3>());
 }
 
 std::vector<double> relativeVariances(const MapState& map, int from) {

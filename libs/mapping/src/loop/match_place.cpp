@@ -21,9 +21,7 @@ const Keyframe& keyframeOf(const MapState& map, int id) {
 
 PlaceMatch describe(const MapState& map, int keyframe, const MatchResult& match) {
   const Eigen::Isometry3d& map_from_keyframe = keyframeOf(map, keyframe).map_from_body;
-  Matrix6d map_from_local = Matrix6d::Zero();
-  map_from_local.topLeftCorner<3, 3>() = map_from_keyframe.linear();
-  map_from_local.bottomRightCorner<3, 3>() = map_from_keyframe.linear();
+  const Matrix6d map_from_local = turned(map_from_keyframe.linear());
   PlaceMatch result;
   result.keyframe = keyframe;
   result.keyframe_from_body = normalized(map_from_keyframe.inverse() * match.map_from_body);

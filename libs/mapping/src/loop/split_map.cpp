@@ -5,6 +5,8 @@
 #include "opp/graph/union_find.h"
 #include "opp/mapping/loop/keyframe_graph.h"
 
+#include "registration/observability.h"
+
 #include <Eigen/Cholesky>
 
 #include <algorithm>
@@ -205,9 +207,8 @@ class TiedSets {
 
   /// Of the factor's (ω, v) in the map's axes, v at the map's origin.
   Matrix6d informationOf(const RelativePoseFactor& f) const {
-    Matrix6d first_from_map = Matrix6d::Zero();
-    first_from_map.topLeftCorner<3, 3>() = first_from_map.bottomRightCorner<3, 3>() =
-        map_.keyframes[Index(f.first)].map_from_body.linear().transpose();
+    const Matrix6d first_from_map =
+        turned(map_.keyframes[Index(f.first)].map_from_body.linear().transpose());
     const Matrix6d at_second =
         first_from_map * movedBy(map_.keyframes[Index(f.second)].map_from_body.translation());
     return at_second.transpose() * f.information * at_second;

@@ -8,6 +8,8 @@
 #include "opp/mapping/loop/match_place.h"
 #include "opp/mapping/loop/split_map.h"
 
+#include "registration/observability.h"
+
 #include <Eigen/Eigenvalues>
 
 #include <algorithm>
@@ -90,9 +92,7 @@ std::optional<ExpectedBeginning> Mapper::expectedBeginning(
   if (!expected || map.scans.empty()) return std::nullopt;
   const LocalizedScan& last = map.scans.back();
   const Eigen::Isometry3d last_from_map = poseOf(map, last).inverse();
-  Matrix6d map_from_last = Matrix6d::Zero();
-  map_from_last.topLeftCorner<3, 3>() = map_from_last.bottomRightCorner<3, 3>() =
-      last_from_map.linear().transpose();
+  const Matrix6d map_from_last = turned(last_from_map.linear().transpose());
   return ExpectedBeginning{last.session, last.scan_index, scan.scan_index,
                            last_from_map * expected->map_from_body,
                            map_from_last.transpose() * expected->information * map_from_last};
@@ -127,7 +127,14 @@ void Mapper::splitParts() {
   const double max_drift = params_.frontend.max_drift_translation;
   std::vector<MapPart> parts;
   for (MapPart& part : parts_) {
-    for (MapState& map : splitMap(std::move(part.map), max_drift * max_drift)) {
+    std::vector<MapState> maps = splitMap(std::move(part.map), max_drift * max_drift);
+    if (maps.size() == 1) {
+      part.id = next_part_++;
+      part.map = std::move(maps.front());
+      parts.push_back(std::move(part));
+      continue;
+    }
+    for (MapState& map : maps) {
       parts.emplace_back(next_part_++, params_.loop);
       parts.back().origins = part.origins;
       parts.back().beginnings = part.beginnings;

@@ -30,6 +30,11 @@ Matrix6d withoutNoise(const Matrix6d& hessian, const Matrix6d& noise, double ran
   return units.cwiseInverse().asDiagonal() * positive * units.cwiseInverse().asDiagonal();
 }
 
+double largestVariance(const Eigen::Matrix3d& covariance) {
+  return Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(covariance, Eigen::EigenvaluesOnly)
+      .eigenvalues()[2];
+}
+
 Matrix6d covarianceOf(const Matrix6d& information) {
   constexpr double kLeast = 1e-4;
   return (information + kLeast * Matrix6d::Identity()).ldlt().solve(Matrix6d::Identity());

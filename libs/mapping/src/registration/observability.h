@@ -45,6 +45,17 @@ class NormalNoise {
 /// points at that range [m] > 0 by a metre.
 Matrix6d withoutNoise(const Matrix6d& hessian, const Matrix6d& noise, double range);
 
+/// Turns (ω, v) from one frame's axes to another's.
+inline Matrix6d turned(const Eigen::Matrix3d& to_from) {
+  Matrix6d result = Matrix6d::Zero();
+  result.topLeftCorner<3, 3>() = to_from;
+  result.bottomRightCorner<3, 3>() = to_from;
+  return result;
+}
+
+/// Variance in the worst direction.
+double largestVariance(const Eigen::Matrix3d& covariance);
+
 /// Inverse of an information matrix; a direction without counts as known to 100 rad or 100 m.
 Matrix6d covarianceOf(const Matrix6d& information);
 
