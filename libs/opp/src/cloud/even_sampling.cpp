@@ -79,11 +79,13 @@ class Sampler {
     out.weights.reserve(seeds_.size());
     for (std::size_t i = 0; i < seeds_.size(); ++i) {
       const Sums& s = sums_[i];
-      const Eigen::Vector3d point = seeds_[i].point.cast<double>() + s.offset / s.weight;
+      const Eigen::Vector3d mean = seeds_[i].point.cast<double>() + s.offset / s.weight;
+      const Eigen::Vector3f point = mean.cast<float>();
       const Eigen::Vector3d normal = s.normal.normalized();
-      // A mean of normals that all point to the viewpoint may point away where the view is grazing.
-      const bool away = normal.dot(out.viewpoint.cast<double>() - point) < 0.0;
-      out.points.push_back(point.cast<float>());
+      // A mean of normals that all point to the viewpoint may point away where the view is grazing,
+      // and where coordinates are so large that rounding moves the point.
+      const bool away = normal.dot((out.viewpoint - point).cast<double>()) < 0.0;
+      out.points.push_back(point);
       out.normals.push_back((away ? Eigen::Vector3d(-normal) : normal).cast<float>());
       out.sigmas.push_back(static_cast<float>(std::sqrt(s.variance / s.weight)));
       out.weights.push_back(static_cast<float>(s.weight));

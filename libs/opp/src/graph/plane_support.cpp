@@ -212,7 +212,10 @@ SupportPatch largestPatch(const OrientedCloud& cloud, const Plane& plane,
   std::vector<Cell> cell_of, cells;
   for (const int i : samples) {
     coordinates.emplace_back(tangents.transpose() * (pointOf(cloud, i) - origin));
-    const Eigen::Array2d index = (coordinates.back().array() / cell).floor();
+    // Samples without an extent all lie at one point.
+    const Eigen::Array2d index = cell > 0.0
+                                     ? Eigen::Array2d((coordinates.back().array() / cell).floor())
+                                     : Eigen::Array2d::Zero();
     cell_of.push_back({static_cast<std::int64_t>(index[0]), static_cast<std::int64_t>(index[1])});
   }
   cells = cell_of;
