@@ -78,6 +78,69 @@ TEST(DetectPrimitives, DetailShowsTheSidesOfASmallBox) {
   EXPECT_GE(found, 3 * kScans * 9 / 10) << "of three sides each";
 }
 
+int planesLike(const Plane& wall, const Primitives& primitives) {
+  return static_cast<int>(
+      std::count_if(primitives.planes.begin(), primitives.planes.end(),
+                    [&](const auto& p) { return angleBetween(p.plane, wall) < degToRad(10.0); }));
+}
+
+TEST(DetectPrimitives, DistortionDoesNotBreakAWall) {
+  // Waves of two standard deviations of the distortion, 35° long, on a wall and a floor.
+  test::Random random(5);
+  const Plane wall = Plane::fromPointNormal({1.8, 0.0, 0.0}, {-1.0, 0.3, 0.1});
+  const Plane floor = Plane::fromPointNormal({0.0, 0.0, -0.9}, {0.1, 0.0, 1.0});
+  const test::RangeAlong room = test::insideOf({wall, floor});
+  int broken = 0;
+  for (int scan = 0; scan < 10; ++scan) {
+    const Eigen::Vector3d wave = 2.0 * kPi / degToRad(35.0) * random.unitVector();
+    const double phase = random.uniform(0.0, 2.0 * kPi);
+    PrimitiveParams params;
+    const SensorModel sensor = params.sensor;
+    PointCloud cloud = test::renderDepth({}, [&](const Eigen::Vector3d& ray) {
+      const double range = room(ray);
+      return range + 2.0 * sensor.distortion(range) * std::sin(wave.dot(ray) + phase);
+    });
+    test::addRangeNoise(cloud, sensor, random);
+    EXPECT_EQ(planesLike(wall, detectPrimitives(makeOrientedCloud(cloud, sensor, params.sampling),
+                                                params)),
+              1)
+        << "scan " << scan;
+    params.sensor.distortion_quadratic = 0.0;
+    broken += planesLike(wall, detectPrimitives(makeOrientedCloud(cloud, sensor, params.sampling),
+                                                params)) > 1;
+  }
+  EXPECT_GT(broken, 3) << "a sensor without distortion sees what is there";
+}
+
+TEST(DetectPrimitives, ABoardOnAWallIsAPlaneOfItsOwn) {
+  // 8 mm are less than the distortion allows at 1.8 m; but at the board's rim the surface steps.
+  test::Random random(6);
+  const Plane wall = Plane::fromPointNormal({1.8, 0.0, 0.0}, {-1.0, 0.2, 0.1});
+  const Plane board =
+      Plane::fromPointNormal(Eigen::Vector3d(1.8, 0.0, 0.0) + 0.008 * wall.normal(), wall.normal());
+  const Plane floor = Plane::fromPointNormal({0.0, 0.0, -0.9}, {0.1, 0.0, 1.0});
+  const PrimitiveParams params;
+  PrimitiveParams undistorted;
+  undistorted.sensor.distortion_quadratic = 0.0;
+  int found = 0;
+  for (int scan = 0; scan < 30; ++scan) {
+    const double left = random.uniform(-0.1, 0.3), low = random.uniform(-0.4, 0.0);
+    PointCloud cloud = test::renderDepth({}, [&](const Eigen::Vector3d& ray) {
+      const Eigen::Vector3d on_board = ray * test::insideOf({board})(ray);
+      const bool hit = on_board.y() < left && on_board.y() > left - 0.6 && on_board.z() > low &&
+                       on_board.z() < low + 0.5;
+      return test::insideOf({hit ? board : wall, floor})(ray);
+    });
+    test::addRangeNoise(cloud, params.sensor, random);
+    const OrientedCloud samples = makeOrientedCloud(cloud, params.sensor, params.sampling);
+    const int planes = planesLike(wall, detectPrimitives(samples, params));
+    found += planes > 1;
+    EXPECT_EQ(planes > 1, planesLike(wall, detectPrimitives(samples, undistorted)) > 1)
+        << "scan " << scan;
+  }
+  EXPECT_GE(found, 27);
+}
+
 TEST(DetectPrimitives, DegenerateCloudsGiveFinitePlanes) {
   for (const auto& [name, cloud] : test::degenerateClouds()) {
     SCOPED_TRACE(name);

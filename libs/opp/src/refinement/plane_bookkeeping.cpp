@@ -11,31 +11,14 @@
 namespace opp {
 namespace {
 
-/// One surface that nearest-plane assignment cuts in two: each half of a Gaussian has a mean square
-/// of 0.36 σ² about its own plane and of 1 σ² about the common one, 2.8 times as much. Two surfaces
-/// that `splitLayers` tells apart have at least 6 times as much.
-constexpr double kOneSurface = 4.0;
-
-/// Whether the samples of both planes fit one plane as well as two.
-bool sameSurface(const PlaneFit& a, const PlaneFit& b, const RefinementParams& params) {
-  if (std::abs(a.plane.normal().dot(b.plane.normal())) < std::cos(params.normal_gate)) return false;
-  PointMoments joint = a.moments;
-  joint.merge(b.moments);
-  const Eigen::Vector3d normal = ownNormal(joint.scatter(), a.plane.normal());
-  const Plane plane = Plane::fromPointNormal(joint.mean(), normal);
-  const auto fits = [&](const PlaneFit& part) {
-    return part.moments.squaredError(plane) <= kOneSurface * part.moments.squaredError(part.plane);
-  };
-  return fits(a) && fits(b);
-}
-
 void absorb(const PlaneFit& part, PlaneFit& whole) {
   whole.sums.merge(part.sums);
   whole.moments = whole.sums.moments();
-  whole.slack = std::max(whole.slack, part.slack);
   whole.reach.extend(part.reach);
   const Eigen::Vector3d normal = ownNormal(whole.moments.scatter(), whole.plane.normal());
   whole.plane = Plane::fromPointNormal(whole.moments.mean(), normal);
+  const double rms = std::sqrt(whole.moments.squaredError(whole.plane) / whole.moments.weight());
+  whole.slack = std::max({whole.slack, part.slack, rms});
 }
 
 }  // namespace
@@ -49,7 +32,8 @@ Eigen::Vector3d ownNormal(const Eigen::Matrix3d& scatter, const Eigen::Vector3d&
   return normal.dot(known) < 0.0 ? Eigen::Vector3d(-normal) : normal;
 }
 
-std::vector<int> survivors(std::vector<PlaneFit>& fits, const RefinementParams& params) {
+std::vector<int> survivors(SameSurface& same_surface, const RefinementParams& params,
+                           std::vector<PlaneFit>& fits) {
   const std::size_t count = fits.size();
   std::vector<std::size_t> order(count);
   std::iota(order.begin(), order.end(), std::size_t{0});
@@ -61,7 +45,7 @@ std::vector<int> survivors(std::vector<PlaneFit>& fits, const RefinementParams& 
   for (const std::size_t k : order) {
     if (fits[k].curved || fits[k].uncertain || fits[k].sums.support < params.min_support) continue;
     const auto same = std::find_if(kept.begin(), kept.end(), [&](std::size_t other) {
-      return sameSurface(fits[other], fits[k], params);
+      return same_surface(fits[other], other, fits[k], k);
     });
     const std::size_t whole = same == kept.end() ? k : *same;
     if (whole == k) {
@@ -69,6 +53,7 @@ std::vector<int> survivors(std::vector<PlaneFit>& fits, const RefinementParams& 
       first[k] = k;
     } else {
       absorb(fits[k], fits[whole]);
+      same_surface.merge(k, whole);
       first[whole] = std::min(first[whole], k);
     }
     target[k] = static_cast<int>(whole);

@@ -6,6 +6,7 @@
 #include "opp/primitives/primitives.h"
 #include "opp/refinement/refinement_params.h"
 
+#include "refinement/same_surface.h"
 #include "refinement/sample_assignment.h"
 
 #include <vector>
@@ -19,9 +20,9 @@ inline constexpr double kLeastAngleVariance = 1e-12;
 Eigen::Vector3d ownNormal(const Eigen::Matrix3d& scatter, const Eigen::Vector3d& known);
 
 /// New index of each plane after dropping curved ones and those with too few samples (−1) and
-/// merging those whose samples fit one plane as well as two; a merged plane's sums go to the one
-/// with more support.
-std::vector<int> survivors(std::vector<PlaneFit>& fits, const RefinementParams& params);
+/// merging those that are one surface; a merged plane's sums go to the one with more support.
+std::vector<int> survivors(SameSurface& same_surface, const RefinementParams& params,
+                           std::vector<PlaneFit>& fits);
 
 /// Renumbers planes and edges by `new_index`; edges that lose a plane go, equal ones add votes.
 void compact(const std::vector<int>& new_index, std::vector<PlaneFit>& fits,

@@ -45,6 +45,7 @@ class Refiner {
   Refiner(const OrientedCloud& cloud, const PlaneGraph& graph, const SensorModel& sensor,
           const RefinementParams& params)
       : cloud_(cloud),
+        sensor_(sensor),
         params_(params),
         blocks_(cloud.points),
         samples_(inOrder(weightedSamples(cloud, sensor), blocks_.order())),
@@ -178,7 +179,9 @@ class Refiner {
   }
 
   void dropAndMerge() {
-    const std::vector<int> new_index = survivors(fits_, params_);
+    SameSurface same_surface(samples_, labels_, cloud_.viewpoint.cast<double>(), sensor_, params_,
+                             fits_.size());
+    const std::vector<int> new_index = survivors(same_surface, params_, fits_);
     compact(new_index, fits_, edges_);
     for (int& label : labels_) {
       if (label >= 0) label = new_index[static_cast<Index>(label)];
@@ -203,6 +206,7 @@ class Refiner {
   }
 
   const OrientedCloud& cloud_;
+  const SensorModel& sensor_;
   const RefinementParams& params_;
   SampleBlocks blocks_;
   std::vector<WeightedSample> samples_;  ///< in the order of the blocks, as labels_

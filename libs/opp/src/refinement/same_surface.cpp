@@ -1,0 +1,139 @@
+// SPDX-FileCopyrightText: 2026 The opp-mapping authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "refinement/same_surface.h"
+
+#include "refinement/plane_bookkeeping.h"
+
+#include <algorithm>
+#include <cmath>
+#include <tuple>
+
+namespace opp {
+namespace {
+
+/// One surface that nearest-plane assignment cuts in two: each half of a Gaussian has a mean square
+/// of 0.36 σ² about its own plane and of 1 σ² about the common one, 2.8 times as much. Two surfaces
+/// that `splitLayers` tells apart have at least 6 times as much.
+constexpr double kOneSurface = 4.0;
+/// Distortion is smooth: it changes by its standard deviation over this share of the range, a
+/// quarter of what a camera sees.
+constexpr double kBendLength = 0.1;
+/// Samples adjoin that lie no farther apart than this many of their extents (a diagonal is √2).
+constexpr double kAdjoin = 1.5;
+/// Pieces adjoin along at least this many pairs of samples; fewer tell nothing.
+constexpr double kLeastPairs = 3.0;
+/// A step shows in full between samples that adjoin, less what a sample astride of it takes from
+/// both sides; along a bent surface they differ by its slope over one extent.
+constexpr double kStep = 0.5;
+
+/// Whether the part turns from the common normal by no more than its uncertainty and a bend of
+/// `slope` (standard deviation [rad]) allow.
+bool turnsBy(const PlaneFit& part, const Eigen::Vector3d& normal, double slope, double sigmas) {
+  const Eigen::Matrix<double, 3, 2> tangents = tangentBasis(normal);
+  const Eigen::Vector3d& own = part.plane.normal();
+  const Eigen::Vector2d turn = tangents.transpose() * own;
+  const Eigen::Matrix2d known = tangents.transpose() * part.information(own) * tangents;
+  // (C + s²)⁻¹ = (1 + s² K)⁻¹ K for C = K⁻¹, also where K is singular.
+  const Eigen::Matrix2d weight =
+      (Eigen::Matrix2d::Identity() + slope * slope * known).inverse() * known;
+  return turn.dot(weight * turn) <= sigmas * sigmas;
+}
+
+/// A sample in the frame of the common plane.
+struct Place {
+  double along = 0.0;  ///< in the plane [m]
+  double across = 0.0;
+  double offset = 0.0;  ///< from the plane [m]
+  double squared_extent = 0.0;
+  int label = 0;  ///< +1: of the first plane, −1: of the second
+  int side = 0;   ///< sum of the labels of the samples that adjoin
+};
+
+/// visit(i, j), i before j, for all samples that adjoin; `places` ascend along the plane.
+template <typename Visit>
+void visitAdjoining(const std::vector<Place>& places, double widest, const Visit& visit) {
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    for (std::size_t j = i + 1; j < places.size(); ++j) {
+      const double along = places[j].along - places[i].along;
+      if (along > kAdjoin * widest) break;
+      const double across = places[j].across - places[i].across;
+      const double extent = std::max(places[i].squared_extent, places[j].squared_extent);
+      if (along * along + across * across <= kAdjoin * kAdjoin * extent) visit(i, j);
+    }
+  }
+}
+
+}  // namespace
+
+SameSurface::SameSurface(const std::vector<WeightedSample>& samples, const std::vector<int>& labels,
+                         const Eigen::Vector3d& viewpoint, const SensorModel& sensor,
+                         const RefinementParams& params, std::size_t planes)
+    : samples_(samples), viewpoint_(viewpoint), sensor_(sensor), params_(params), members_(planes) {
+  for (std::size_t i = 0; i < labels.size(); ++i) {
+    if (labels[i] < 0) continue;
+    members_[static_cast<std::size_t>(labels[i])].push_back(static_cast<std::uint32_t>(i));
+  }
+}
+
+bool SameSurface::operator()(const PlaneFit& a, std::size_t index_a, const PlaneFit& b,
+                             std::size_t index_b) const {
+  if (std::abs(a.plane.normal().dot(b.plane.normal())) < std::cos(params_.normal_gate))
+    return false;
+  PointMoments joint = a.moments;
+  joint.merge(b.moments);
+  const Eigen::Vector3d normal = ownNormal(joint.scatter(), a.plane.normal());
+  const Plane plane = Plane::fromPointNormal(joint.mean(), normal);
+  bool fits = true, bends = true;
+  double step = 0.0;
+  for (const PlaneFit* part : {&a, &b}) {
+    const double own = part->moments.squaredError(part->plane);
+    const double common = part->moments.squaredError(plane);
+    const double range = (part->moments.mean() - viewpoint_).norm();
+    const double bend = sensor_.distortion(range), sigmas = params_.test_sigmas;
+    fits = fits && common <= kOneSurface * own;
+    bends = bends && common - own <= part->moments.weight() * std::pow(sigmas * bend, 2) &&
+            turnsBy(*part, normal, bend / (kBendLength * range), sigmas);
+    step = std::max(step, std::sqrt(std::max(0.0, common - own) / part->moments.weight()));
+  }
+  if (fits) return true;
+  return bends && goesOn(index_a, index_b, normal, step);
+}
+
+bool SameSurface::goesOn(std::size_t a, std::size_t b, const Eigen::Vector3d& normal,
+                         double step) const {
+  const Eigen::Matrix<double, 3, 2> tangents = tangentBasis(normal);
+  std::vector<Place> places;
+  double widest = 0.0;
+  for (const std::size_t plane : {a, b}) {
+    for (const std::uint32_t i : members_[plane]) {
+      const WeightedSample& sample = samples_[i];
+      places.push_back({tangents.col(0).dot(sample.point), tangents.col(1).dot(sample.point),
+                        normal.dot(sample.point), sample.area, plane == a ? 1 : -1, 0});
+      widest = std::max(widest, std::sqrt(sample.area));
+    }
+  }
+  std::sort(places.begin(), places.end(), [](const Place& p, const Place& q) {
+    return std::tie(p.along, p.across) < std::tie(q.along, q.across);
+  });
+  visitAdjoining(places, widest, [&](std::size_t i, std::size_t j) {
+    places[i].side += places[j].label;
+    places[j].side += places[i].label;
+  });
+  // A sample's own label depends on its own error, which would show as a step.
+  double pairs = 0.0, jumps = 0.0;
+  visitAdjoining(places, widest, [&](std::size_t i, std::size_t j) {
+    if (places[i].side == 0 || places[j].side == 0) return;
+    if ((places[i].side > 0) == (places[j].side > 0)) return;
+    const double jump = places[j].offset - places[i].offset;
+    jumps += places[j].side > 0 ? jump : -jump;
+    pairs += 1.0;
+  });
+  return pairs >= kLeastPairs && std::abs(jumps) < kStep * step * pairs;
+}
+
+void SameSurface::merge(std::size_t part, std::size_t whole) {
+  members_[whole].insert(members_[whole].end(), members_[part].begin(), members_[part].end());
+  members_[part].clear();
+}
+
+}  // namespace opp
