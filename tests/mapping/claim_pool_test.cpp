@@ -58,13 +58,14 @@ TEST(ClaimPool, ComparesPosesWhereTheClaimWasMade) {
   EXPECT_TRUE(pool.agreed().empty());
 }
 
-TEST(ClaimPool, ForgetsClaimsOfOldKeyframes) {
+TEST(ClaimPool, ForgetsWhatItIsTold) {
+  const auto old = [](const PlaceClaim& claim) { return claim.keyframe_b < 2; };
   ClaimPool pool{LoopParams()};
   pool.add(claimOf(1, Eigen::Isometry3d::Identity()));
-  pool.forgetBefore(2);
+  pool.forget(old);
   EXPECT_TRUE(pool.empty());
   pool.add(claimOf(2, Eigen::Isometry3d::Identity()));
-  pool.forgetBefore(2);
+  pool.forget(old);
   EXPECT_FALSE(pool.empty());
 }
 

@@ -95,6 +95,23 @@ TEST(MapJoiner, BelievesMotionThatDeniesAJoin) {
   }
 }
 
+TEST(MapJoiner, APlaceRecognizedWhereItCannotBeProvesNothing) {
+  const test::Rectangles room = test::furnishedRoom(1);
+  ExpectedBeginning elsewhere;
+  elsewhere.last_scan = 15;
+  elsewhere.first_scan = 40;
+  elsewhere.last_from_first = poseAt(15).inverse() * poseAt(40);
+  elsewhere.last_from_first.translation().x() += 4.0;
+  elsewhere.information = Matrix6d::Identity() / 0.04;
+  // The third sees the room too. That the second is another room like it takes away the proof.
+  for (const bool repeats : {false, true}) {
+    std::vector<MapPart> parts = {partOf(room, 0, 0), partOf(room, 1, 40), partOf(room, 2, 80)};
+    if (repeats) parts[1].beginnings = {elsewhere};
+    MapJoiner(MapperParams()).joinAll(parts);
+    EXPECT_EQ(parts.size(), repeats ? 3U : 1U);
+  }
+}
+
 TEST(MapJoiner, DoesNotCompareWhatWasTakenAsunder) {
   const test::Rectangles room = test::furnishedRoom(1);
   std::vector<MapPart> parts = {partOf(room, 0, 0), partOf(room, 1, 40)};

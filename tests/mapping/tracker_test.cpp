@@ -113,6 +113,25 @@ TEST(Tracker, AScanOfAnotherPlaceIsLostAndHarmless) {
                   .localized());
 }
 
+TEST(Tracker, ExpectsABodyThatSawNothingButNotOneThatWasMoved) {
+  int lost = 0;
+  for (std::uint64_t room = 0; room < 20; ++room) {
+    const Eigen::Isometry3d pose = poseAt(0.0, 0.0);
+    Started blind = startAt(room, pose);
+    blind.tracker.track(ScanFeatures(), std::nullopt, blind.map);
+    const auto expected = blind.tracker.expected(3.0 * kTimeStep, std::nullopt);
+    ASSERT_TRUE(expected);
+    EXPECT_LT(difference(pose, expected->map_from_body).norm(), 1e-9) << "it stood still";
+
+    Started moved = startAt(room, pose);
+    const ScanFeatures elsewhere = scanOf(room + 20, 1, poseAt(2.5, 0.8));
+    if (moved.tracker.track(elsewhere, std::nullopt, moved.map).localized()) continue;
+    ++lost;
+    EXPECT_FALSE(moved.tracker.expected(3.0 * kTimeStep, std::nullopt)) << "room " << room;
+  }
+  EXPECT_GT(lost, 10);
+}
+
 TEST(Tracker, FollowsAMapThatMoved) {
   Started started = startAt(4, poseAt(0.0, 0.0));
   Eigen::Isometry3d new_from_old(Eigen::AngleAxisd(1.0, Eigen::Vector3d::UnitZ()));

@@ -45,19 +45,16 @@ void Tracker::start(const StampedPose& pose,
                     const std::optional<Eigen::Isometry3d>& odom_from_body) {
   motion_.start(pose, odom_from_body);
   follows_ = true;
-  past_structure_ = false;
+  surprised_ = false;
 }
 
 std::optional<PosePrior> Tracker::expected(
     double timestamp, const std::optional<Eigen::Isometry3d>& odom_from_body) const {
-  if (!past_structure_) return std::nullopt;
+  if (surprised_) return std::nullopt;
   return motion_.predict(timestamp, odom_from_body);
 }
 
 namespace {
-
-/// Twice the logarithm of the odds of 100 to 1.
-constexpr double kClearly = 9.2;
 
 /// Whether motion speaks against a body that has turned around, by odds of 100 to 1. One scan
 /// cannot tell a rectangular hall from the same hall turned around.
@@ -95,9 +92,10 @@ TrackResult Tracker::track(const ScanFeatures& scan,
     return result;
   }
   result = localize(scan, predicted, moved, newest);
-  follows_ = result.localized();
-  if (!result.localized() && result.outcome != TrackOutcome::kUnobserved) return result;
-  past_structure_ = !result.localized();
+  const bool followed = std::exchange(follows_, result.localized());
+  const bool lost = !result.localized() && result.outcome != TrackOutcome::kUnobserved;
+  if (followed || !lost) surprised_ = lost && surprises(predicted, scan, newest);
+  if (lost) return result;
   // Between keyframes, motion ties what neither planes nor points do.
   result.match.point_information += motion_.informationSinceAnchor(scan.timestamp, odom_from_body);
   motion_.update({scan.timestamp, result.match.map_from_body}, odom_from_body,
@@ -169,6 +167,14 @@ bool Tracker::contradicts(const Eigen::Isometry3d& map_from_body, const ScanFeat
   return verification.conflict() > params_.frontend.max_conflict;
 }
 
+bool Tracker::surprises(const PosePrior& predicted, const ScanFeatures& scan,
+                        const Keyframe& newest) const {
+  const Matrix6d covariance = predicted.information.inverse();
+  const double max_drift = params_.frontend.max_drift_translation;
+  return largestVariance(covariance.bottomRightCorner<3, 3>()) <= max_drift * max_drift &&
+         contradicts(predicted.map_from_body, scan, newest);
+}
+
 std::optional<PosePrior> Tracker::relocalize(const ScanFeatures& scan, const PosePrior& last,
                                              const Keyframe& newest) const {
   const GlobalAlignment alignment =
@@ -197,8 +203,6 @@ bool Tracker::wantsKeyframe(const MatchResult& match, const Keyframe& newest) co
 
 std::optional<Eigen::Isometry3d> likeliest(const std::vector<Eigen::Isometry3d>& poses,
                                            const PosePrior& prior) {
-  // The 99.9 % point of χ² with six degrees of freedom.
-  constexpr double kPossible = 22.5;
   double best = std::numeric_limits<double>::infinity(), second = best;
   std::optional<Eigen::Isometry3d> result;
   for (const Eigen::Isometry3d& pose : poses) {

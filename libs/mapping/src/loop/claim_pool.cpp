@@ -7,12 +7,6 @@
 
 namespace opp::mapping {
 
-void ClaimPool::forgetBefore(int first) {
-  claims_.erase(std::remove_if(claims_.begin(), claims_.end(),
-                               [&](const PlaceClaim& c) { return c.keyframe_b < first; }),
-                claims_.end());
-}
-
 bool ClaimPool::agree(const PlaceClaim& x, const PlaceClaim& y) const {
   if (rotationAngle(x.map_a_from_map_b.inverse() * y.map_a_from_map_b) > params_.agree_rotation)
     return false;

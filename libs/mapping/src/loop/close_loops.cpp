@@ -123,7 +123,8 @@ int acceptClaims(const std::vector<PlaceClaim>& claims, const MapperParams& para
 
 bool LoopCloser::close(MapState& map) {
   const int newest = static_cast<int>(map.keyframes.size()) - 1;
-  claims_.forgetBefore(newest - params_.loop.memory);
+  claims_.forget(
+      [&](const PlaceClaim& claim) { return claim.keyframe_b < newest - params_.loop.memory; });
   const std::vector<double> variances = relativeVariances(map, newest);
   const Keyframe& keyframe = map.keyframes.back();
   for (const int candidate : candidates(map, newest, variances, params_)) {

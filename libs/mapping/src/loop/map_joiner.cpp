@@ -23,65 +23,8 @@ constexpr int kComparedKeyframes = 12;
 /// Keyframes of a part that look for their places in the end, about.
 constexpr int kClaimants = 40;
 
-const LocalizedScan* scanOf(const MapState& map, int session, std::size_t scan_index) {
-  const auto found = std::find_if(map.scans.begin(), map.scans.end(), [&](const LocalizedScan& s) {
-    return s.session == session && s.scan_index == scan_index;
-  });
-  return found == map.scans.end() ? nullptr : &*found;
-}
-
-Eigen::Isometry3d poseOf(const MapState& map, const LocalizedScan& scan) {
-  return map.keyframes[Index(scan.keyframe)].map_from_body * scan.keyframe_from_body;
-}
-
-/// Whether motion between the end of one part and the beginning of the other allows the pose.
-bool expectedBy(const ExpectedBeginning& beginning, const MapState& a, const MapState& b,
-                const Eigen::Isometry3d& a_from_b) {
-  // The 99.9 % point of χ² with six degrees of freedom.
-  constexpr double kPossible = 22.5;
-  const LocalizedScan* last = scanOf(a, beginning.session, beginning.last_scan);
-  const LocalizedScan* first = scanOf(b, beginning.session, beginning.first_scan);
-  if (last == nullptr || first == nullptr) return true;
-  const Eigen::Isometry3d last_from_first =
-      poseOf(a, *last).inverse() * a_from_b * poseOf(b, *first);
-  const Vector6d error = difference(beginning.last_from_first, last_from_first);
-  return error.dot(beginning.information * error) <= kPossible;
-}
-
-/// The same for all beginnings of the two parts.
-bool expectedToBe(const MapPart& a, const MapPart& b, const Eigen::Isometry3d& a_from_b) {
-  const auto agree = [](const MapPart& earlier, const MapPart& later,
-                        const Eigen::Isometry3d& earlier_from_later) {
-    return std::all_of(later.beginnings.begin(), later.beginnings.end(),
-                       [&](const auto& beginning) {
-                         return expectedBy(beginning, earlier.map, later.map, earlier_from_later);
-                       });
-  };
-  return agree(a, b, a_from_b) && agree(b, a, a_from_b.inverse());
-}
-
 bool haveCommon(const std::set<int>& a, const std::set<int>& b) {
   return std::any_of(a.begin(), a.end(), [&](int id) { return b.count(id) > 0; });
-}
-
-/// Whether the body can have got from the one part to the other: within a session it moves at most
-/// at some times its typical speed.
-bool reachable(const MapState& a, const MapState& b, const Eigen::Isometry3d& a_from_b,
-               const MapperParams& params) {
-  constexpr double kSigmas = 3.0;
-  for (const LocalizedScan& first : b.scans) {
-    const LocalizedScan* last = nullptr;
-    for (const LocalizedScan& scan : a.scans) {
-      if (scan.session == first.session && scan.timestamp <= first.timestamp) last = &scan;
-    }
-    if (last == nullptr) continue;
-    const double seconds = first.timestamp - last->timestamp;
-    const Eigen::Vector3d was = poseOf(a, *last).translation();
-    const Eigen::Vector3d is = a_from_b * poseOf(b, first).translation();
-    return (is - was).norm() <=
-           params.loop.search_distance + kSigmas * params.frontend.speed * seconds;
-  }
-  return true;
 }
 
 /// The keyframe of `map` whose view is nearest to `view`; −1 if none is within `reach`.
@@ -154,36 +97,54 @@ std::vector<MapJoiner::Candidate> MapJoiner::candidates(const std::vector<MapPar
   return chosen;
 }
 
-void MapJoiner::claim(const std::vector<MapPart>& parts, Index claimant, int keyframe) {
-  const MapPart& own = parts[claimant];
+void MapJoiner::claim(std::vector<MapPart>& parts, Index claimant, int keyframe) {
+  MapPart& own = parts[claimant];
   const Keyframe& scan = own.map.keyframes[Index(keyframe)];
   const Place own_place =
       placeOf(own.map, keyframe,
               connectedViews(own.map, keyframe, params_.loop.place_keyframes, params_), params_);
   for (const Candidate& c : candidates(parts, claimant, scan.features.primitives_in_body)) {
-    const MapPart& other = parts[c.part];
+    MapPart& other = parts[c.part];
     const auto match =
         matchPlace(other.map, c.keyframe, scan.features, own_place.features, std::nullopt, params_);
     if (!match) continue;
     PlaceClaim claim = claimOf(other.map, *match, own.map, keyframe);
     claim.clarity = match->clarity;
-    if (reachable(other.map, own.map, claim.map_a_from_map_b, params_) &&
-        expectedToBe(other, own, claim.map_a_from_map_b))
+    if (motionAllows(other, own, claim.map_a_from_map_b, params_)) {
       pool(other.id, own.id).add(claim);
+    } else {
+      other.markRepeated(claim.keyframe_a);
+      own.markRepeated(claim.keyframe_b);
+    }
   }
+}
+
+std::vector<PlaceClaim> MapJoiner::provenClaims(MapPart& host, MapPart& guest) {
+  ClaimPool& claims = pool(host.id, guest.id);
+  const double reach = params_.loop.search_distance;
+  claims.forget([&](const PlaceClaim& claim) {
+    return host.seesRepeated(claim.keyframe_a, reach) ||
+           guest.seesRepeated(claim.keyframe_b, reach);
+  });
+  std::vector<PlaceClaim> agreed = claims.agreed();
+  if (agreed.empty() ||
+      conflictOf(host.map, guest.map, agreed.front().map_a_from_map_b, kComparedKeyframes,
+                 params_) <= params_.global_alignment.max_conflict)
+    return agreed;
+  for (const PlaceClaim& claim : agreed) {
+    host.markRepeated(claim.keyframe_a);
+    guest.markRepeated(claim.keyframe_b);
+  }
+  return {};
 }
 
 bool MapJoiner::joinAgreed(std::vector<MapPart>& parts, Index claimant) {
   for (Index p = 0; p < parts.size(); ++p) {
     MapPart &host = parts[p], &guest = parts[claimant];
     if (host.id >= guest.id) continue;
-    const std::vector<PlaceClaim> claims = pool(host.id, guest.id).agreed();
+    const std::vector<PlaceClaim> claims = provenClaims(host, guest);
     if (claims.empty()) continue;
     const Eigen::Isometry3d host_from_guest = claims.front().map_a_from_map_b;
-    if (conflictOf(host.map, guest.map, host_from_guest, kComparedKeyframes, params_) >
-        params_.global_alignment.max_conflict) {
-      continue;
-    }
     const int first = static_cast<int>(host.map.keyframes.size());
     appendMap(host_from_guest, std::move(guest.map), host.map);
     for (PlaceClaim claim : claims) {
@@ -196,6 +157,7 @@ bool MapJoiner::joinAgreed(std::vector<MapPart>& parts, Index claimant) {
       host.index.add(host.map.keyframes[k].features.primitives_in_body);
     host.origins.insert(guest.origins.begin(), guest.origins.end());
     host.beginnings.insert(host.beginnings.end(), guest.beginnings.begin(), guest.beginnings.end());
+    host.repeated.insert(guest.repeated.begin(), guest.repeated.end());
     MapPart joined = std::move(host);
     parts.erase(parts.begin() + static_cast<std::ptrdiff_t>(std::max(p, claimant)));
     parts.erase(parts.begin() + static_cast<std::ptrdiff_t>(std::min(p, claimant)));
@@ -218,12 +180,13 @@ void MapJoiner::joinAll(std::vector<MapPart>& parts) {
   while (joined) {
     joined = false;
     pools_.clear();
-    for (Index p = 0; p < parts.size() && !joined; ++p) {
+    // All claims before any join: a later one may show that a place is one of many alike.
+    for (Index p = 0; p < parts.size(); ++p) {
       const int keyframes = static_cast<int>(parts[p].map.keyframes.size());
       const int step = 1 + keyframes / kClaimants;
       for (int k = 0; k < keyframes; k += step) claim(parts, p, k);
-      joined = joinAgreed(parts, p);
     }
+    for (Index p = 0; p < parts.size() && !joined; ++p) joined = joinAgreed(parts, p);
   }
 }
 

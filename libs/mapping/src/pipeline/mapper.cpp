@@ -30,11 +30,6 @@ bool canFoundMap(const OrientedCloud& cloud, double min_spread) {
   return eigen.eigenvalues()[0] >= min_spread * static_cast<double>(cloud.size());
 }
 
-Eigen::Isometry3d poseOf(const MapState& map, const LocalizedScan& scan) {
-  const Keyframe& keyframe = map.keyframes[static_cast<std::size_t>(scan.keyframe)];
-  return normalized(keyframe.map_from_body * scan.keyframe_from_body);
-}
-
 }  // namespace
 
 Mapper::Mapper(const MapperParams& params)
@@ -138,6 +133,7 @@ void Mapper::splitParts() {
       parts.emplace_back(next_part_++, params_.loop);
       parts.back().origins = part.origins;
       parts.back().beginnings = part.beginnings;
+      parts.back().repeated = part.repeated;
       for (const Keyframe& keyframe : map.keyframes)
         parts.back().index.add(keyframe.features.primitives_in_body);
       parts.back().map = std::move(map);

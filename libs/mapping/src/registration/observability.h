@@ -8,6 +8,12 @@
 
 namespace opp::mapping {
 
+/// The 99.9 % point of χ² with six degrees of freedom: a pose with more squared sigmas is
+/// impossible.
+inline constexpr double kPossible = 22.5;
+/// Twice the logarithm of odds of 100 to 1: so many squared sigmas speak clearly against something.
+inline constexpr double kClearly = 9.2;
+
 /// Jacobian of the point-to-plane residual n·(p − m) by (ω, v), see `retract`. \param arm from the
 /// body's origin to the point, in the map's frame [m]
 inline Vector6d pointToPlaneJacobian(const Eigen::Vector3d& arm, const Eigen::Vector3d& normal) {

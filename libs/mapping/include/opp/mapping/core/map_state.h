@@ -39,4 +39,7 @@ struct MapState {
   std::size_t loop_closures = 0;     ///< places recognized, joins of maps included
 };
 
+/// Pose of the body at a scan of `map`: map_from_body.
+Eigen::Isometry3d poseOf(const MapState& map, const LocalizedScan& scan);
+
 }  // namespace opp::mapping

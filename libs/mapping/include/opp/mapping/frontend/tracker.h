@@ -33,7 +33,7 @@ std::string_view describe(TrackOutcome outcome);
 struct TrackResult {
   TrackOutcome outcome = TrackOutcome::kNoMap;
   bool wants_keyframe = false;  ///< the map would gain by this scan; false if not followed
-  MatchResult match;  ///< of the best attempt, also if it was not good enough
+  MatchResult match;            ///< of the best attempt, also if it was not good enough
 
   bool localized() const { return outcome == TrackOutcome::kLocalized; }
 };
@@ -56,8 +56,8 @@ class Tracker {
   TrackResult track(const ScanFeatures& scan,
                     const std::optional<Eigen::Isometry3d>& odom_from_body, const MapState& map);
 
-  /// Where the body should be at `timestamp`, if it was lost because there was too little to see: a
-  /// body that was carried off is not where motion expects it.
+  /// Where the body should be at `timestamp`, unless it was lost because the map shows something
+  /// else there: a body that was carried off is not where motion expects it.
   std::optional<PosePrior> expected(double timestamp,
                                     const std::optional<Eigen::Isometry3d>& odom_from_body) const;
 
@@ -84,13 +84,16 @@ class Tracker {
                          const Keyframe& newest) const;
   bool contradicts(const Eigen::Isometry3d& map_from_body, const ScanFeatures& scan,
                    const Keyframe& newest) const;
+  /// Whether a pose that was well predicted contradicts the scan: the body was moved.
+  bool surprises(const PosePrior& predicted, const ScanFeatures& scan,
+                 const Keyframe& newest) const;
   bool wantsKeyframe(const MatchResult& match, const Keyframe& newest) const;
 
   MapperParams params_;
   MotionModel motion_;
   std::optional<LocalMap> local_map_;
-  bool follows_ = true;          ///< the last scan was localized
-  bool past_structure_ = false;  ///< the last scan that was followed left a direction open
+  bool follows_ = true;     ///< the last scan was localized
+  bool surprised_ = false;  ///< the scan after that contradicted the map where motion put it
 };
 
 /// Of several poses that explain a scan alike, the one that motion speaks for by odds of 100 to 1

@@ -7,6 +7,7 @@
 
 #include <Eigen/Geometry>
 
+#include <algorithm>
 #include <vector>
 
 namespace opp::mapping {
@@ -33,8 +34,11 @@ class ClaimPool {
   explicit ClaimPool(const LoopParams& params) : params_(params) {}
 
   void add(const PlaceClaim& claim) { claims_.push_back(claim); }
-  /// Drops claims of keyframes b before `first`.
-  void forgetBefore(int first);
+  /// Drops the claims for which `unwanted` is true.
+  template <typename Predicate>
+  void forget(const Predicate& unwanted) {
+    claims_.erase(std::remove_if(claims_.begin(), claims_.end(), unwanted), claims_.end());
+  }
   void clear() { claims_.clear(); }
   bool empty() const { return claims_.empty(); }
 

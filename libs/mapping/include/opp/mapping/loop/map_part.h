@@ -1,0 +1,53 @@
+// SPDX-FileCopyrightText: 2026 The opp-mapping authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "opp/mapping/core/map_state.h"
+#include "opp/mapping/core/mapper_params.h"
+#include "opp/mapping/loop/constellation.h"
+
+#include <cstddef>
+#include <set>
+#include <utility>
+#include <vector>
+
+namespace opp::mapping {
+
+/// What motion says of how a part begins: the body's pose at its first scan relative to that at the
+/// last scan before, of another part.
+struct ExpectedBeginning {
+  int session = 0;
+  std::size_t last_scan = 0;   ///< ScanFeatures::scan_index
+  std::size_t first_scan = 0;  ///< the same
+  Eigen::Isometry3d last_from_first = Eigen::Isometry3d::Identity();
+  Matrix6d information = Matrix6d::Zero();  ///< of (ω, v) in the axes of the last body frame
+};
+
+/// A map that grew on its own: a session, or what came after the body was lost.
+struct MapPart {
+  explicit MapPart(int part_id, const LoopParams& params)
+      : id(part_id), origins({part_id}), index(params.word_width) {}
+
+  /// Whether the keyframe sees a place of `repeated`: one within `reach` of its view [m].
+  bool seesRepeated(int keyframe, double reach) const;
+  void markRepeated(int keyframe);
+
+  int id;  ///< in the order of their beginnings; stays when others join it
+  /// Ids of the maps that its keyframes grew in. Two parts of one map were compared as it grew,
+  /// with more known than is now: they are not compared again.
+  std::set<int> origins;
+  std::vector<ExpectedBeginning> beginnings;
+  /// Session and scan index of keyframes whose place looks like another: it was recognized where it
+  /// cannot be. To recognize it proves nothing.
+  std::set<std::pair<int, std::size_t>> repeated;
+  MapState map;
+  ConstellationIndex index;  ///< of all keyframes
+};
+
+/// Whether the body can have got from the one part to the other if `a_from_b` is right: within a
+/// session it moves at most at some times its typical speed, and begins a part where it was
+/// expected (`MapPart::beginnings`). O(scans).
+bool motionAllows(const MapPart& a, const MapPart& b, const Eigen::Isometry3d& a_from_b,
+                  const MapperParams& params);
+
+}  // namespace opp::mapping
