@@ -88,7 +88,10 @@ class Matcher {
 
   NormalEquations assemble(const SurfelMap& surfels, double annealing) const {
     Residuals residuals;
-    const double extra_variance = annealing * annealing;
+    // Points on one surfel share its error, and a coarse one has more of them: together they say no
+    // more than one of the finest would, or they would lead astray a pose that the prior knows.
+    const double shared = surfels.voxelSize() / map_.fine().voxelSize();
+    const double extra_variance = std::pow(shared * annealing, 2);
     addPoints(surfels, extra_variance, residuals);
     for (const ScanPlane& plane : planes_) {
       if (plane.landmark >= 0) addPlane(plane, extra_variance, residuals);
