@@ -44,9 +44,8 @@ std::vector<int> survivors(SameSurface& same_surface, const RefinementParams& pa
   std::vector<int> target(count, -1);
   for (const std::size_t k : order) {
     if (fits[k].curved || fits[k].uncertain || fits[k].sums.support < params.min_support) continue;
-    const auto same = std::find_if(kept.begin(), kept.end(), [&](std::size_t other) {
-      return same_surface(fits[other], other, fits[k], k);
-    });
+    const auto same = std::find_if(kept.begin(), kept.end(),
+                                   [&](std::size_t other) { return same_surface(other, k); });
     const std::size_t whole = same == kept.end() ? k : *same;
     if (whole == k) {
       kept.push_back(k);

@@ -179,8 +179,8 @@ class Refiner {
   }
 
   void dropAndMerge() {
-    SameSurface same_surface(samples_, labels_, cloud_.viewpoint.cast<double>(), sensor_, params_,
-                             fits_.size());
+    SameSurface same_surface(fits_, samples_, labels_, cloud_.viewpoint.cast<double>(), sensor_,
+                             params_);
     const std::vector<int> new_index = survivors(same_surface, params_, fits_);
     compact(new_index, fits_, edges_);
     for (int& label : labels_) {

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <tuple>
 
 namespace opp {
@@ -65,18 +66,22 @@ void visitAdjoining(const std::vector<Place>& places, double widest, const Visit
 
 }  // namespace
 
-SameSurface::SameSurface(const std::vector<WeightedSample>& samples, const std::vector<int>& labels,
+SameSurface::SameSurface(const std::vector<PlaneFit>& fits,
+                         const std::vector<WeightedSample>& samples, const std::vector<int>& labels,
                          const Eigen::Vector3d& viewpoint, const SensorModel& sensor,
-                         const RefinementParams& params, std::size_t planes)
-    : samples_(samples), viewpoint_(viewpoint), sensor_(sensor), params_(params), members_(planes) {
-  for (std::size_t i = 0; i < labels.size(); ++i) {
-    if (labels[i] < 0) continue;
-    members_[static_cast<std::size_t>(labels[i])].push_back(static_cast<std::uint32_t>(i));
-  }
+                         const RefinementParams& params)
+    : fits_(fits),
+      samples_(samples),
+      labels_(labels),
+      viewpoint_(viewpoint),
+      sensor_(sensor),
+      params_(params),
+      whole_of_(fits.size()) {
+  std::iota(whole_of_.begin(), whole_of_.end(), std::size_t{0});
 }
 
-bool SameSurface::operator()(const PlaneFit& a, std::size_t index_a, const PlaneFit& b,
-                             std::size_t index_b) const {
+bool SameSurface::operator()(std::size_t index_a, std::size_t index_b) const {
+  const PlaneFit &a = fits_[index_a], &b = fits_[index_b];
   if (std::abs(a.plane.normal().dot(b.plane.normal())) < std::cos(params_.normal_gate))
     return false;
   PointMoments joint = a.moments;
@@ -104,13 +109,14 @@ bool SameSurface::goesOn(std::size_t a, std::size_t b, const Eigen::Vector3d& no
   const Eigen::Matrix<double, 3, 2> tangents = tangentBasis(normal);
   std::vector<Place> places;
   double widest = 0.0;
-  for (const std::size_t plane : {a, b}) {
-    for (const std::uint32_t i : members_[plane]) {
-      const WeightedSample& sample = samples_[i];
-      places.push_back({tangents.col(0).dot(sample.point), tangents.col(1).dot(sample.point),
-                        normal.dot(sample.point), sample.area, plane == a ? 1 : -1, 0});
-      widest = std::max(widest, std::sqrt(sample.area));
-    }
+  for (std::size_t i = 0; i < samples_.size(); ++i) {
+    if (labels_[i] < 0) continue;
+    const std::size_t plane = whole_of_[static_cast<std::size_t>(labels_[i])];
+    if (plane != a && plane != b) continue;
+    const WeightedSample& sample = samples_[i];
+    places.push_back({tangents.col(0).dot(sample.point), tangents.col(1).dot(sample.point),
+                      normal.dot(sample.point), sample.area, plane == a ? 1 : -1, 0});
+    widest = std::max(widest, std::sqrt(sample.area));
   }
   std::sort(places.begin(), places.end(), [](const Place& p, const Place& q) {
     return std::tie(p.along, p.across) < std::tie(q.along, q.across);
@@ -131,9 +137,6 @@ bool SameSurface::goesOn(std::size_t a, std::size_t b, const Eigen::Vector3d& no
   return pairs >= kLeastPairs && std::abs(jumps) < kStep * step * pairs;
 }
 
-void SameSurface::merge(std::size_t part, std::size_t whole) {
-  members_[whole].insert(members_[whole].end(), members_[part].begin(), members_[part].end());
-  members_[part].clear();
-}
+void SameSurface::merge(std::size_t part, std::size_t whole) { whole_of_[part] = whole; }
 
 }  // namespace opp

@@ -8,7 +8,6 @@
 #include "refinement/sample_assignment.h"
 
 #include <cstddef>
-#include <cstdint>
 #include <vector>
 
 namespace opp {
@@ -18,15 +17,15 @@ namespace opp {
 /// A bent surface goes on where its pieces adjoin; a layer upon another steps there.
 class SameSurface {
  public:
-  /// `labels`: plane of each sample, −1: none. All are kept by reference.
-  SameSurface(const std::vector<WeightedSample>& samples, const std::vector<int>& labels,
-              const Eigen::Vector3d& viewpoint, const SensorModel& sensor,
-              const RefinementParams& params, std::size_t planes);
+  /// `labels`: plane of each sample, −1: none. All but the viewpoint are kept by reference; fits
+  /// may change, but not their number.
+  SameSurface(const std::vector<PlaneFit>& fits, const std::vector<WeightedSample>& samples,
+              const std::vector<int>& labels, const Eigen::Vector3d& viewpoint,
+              const SensorModel& sensor, const RefinementParams& params);
 
-  /// `a`, `b`: the fits of planes number `index_a`, `index_b`. O(1) for planes that one plane does
-  /// not fit within noise and distortion, else O(n log n) in their samples.
-  bool operator()(const PlaneFit& a, std::size_t index_a, const PlaneFit& b,
-                  std::size_t index_b) const;
+  /// Planes number `a` and `b`. O(1) where one plane does not fit both within noise and distortion,
+  /// else O(samples + n log n) for n samples of the two.
+  bool operator()(std::size_t a, std::size_t b) const;
 
   /// From now on the samples of `part` count as samples of `whole`.
   void merge(std::size_t part, std::size_t whole);
@@ -34,11 +33,13 @@ class SameSurface {
  private:
   bool goesOn(std::size_t a, std::size_t b, const Eigen::Vector3d& normal, double step) const;
 
+  const std::vector<PlaneFit>& fits_;
   const std::vector<WeightedSample>& samples_;
+  const std::vector<int>& labels_;
   Eigen::Vector3d viewpoint_;
   const SensorModel& sensor_;
   const RefinementParams& params_;
-  std::vector<std::vector<std::uint32_t>> members_;  ///< samples of each plane
+  std::vector<std::size_t> whole_of_;  ///< the plane that each plane's samples count for
 };
 
 }  // namespace opp
