@@ -27,6 +27,12 @@ bool haveCommon(const std::set<int>& a, const std::set<int>& b) {
   return std::any_of(a.begin(), a.end(), [&](int id) { return b.count(id) > 0; });
 }
 
+/// The place was recognized where it cannot be.
+void refute(const PlaceClaim& claim, MapPart& a, MapPart& b) {
+  a.markRepeated(claim.keyframe_a);
+  b.markRepeated(claim.keyframe_b);
+}
+
 /// The keyframe of `map` whose view is nearest to `view`; −1 if none is within `reach`.
 int nearestView(const MapState& map, const Eigen::Vector3d& view, double reach) {
   int nearest = -1;
@@ -113,8 +119,7 @@ void MapJoiner::claim(std::vector<MapPart>& parts, Index claimant, int keyframe)
     if (motionAllows(other, own, claim.map_a_from_map_b, params_)) {
       pool(other.id, own.id).add(claim);
     } else {
-      other.markRepeated(claim.keyframe_a);
-      own.markRepeated(claim.keyframe_b);
+      refute(claim, other, own);
     }
   }
 }
@@ -131,10 +136,7 @@ std::vector<PlaceClaim> MapJoiner::provenClaims(MapPart& host, MapPart& guest) {
       conflictOf(host.map, guest.map, agreed.front().map_a_from_map_b, kComparedKeyframes,
                  params_) <= params_.global_alignment.max_conflict)
     return agreed;
-  for (const PlaceClaim& claim : agreed) {
-    host.markRepeated(claim.keyframe_a);
-    guest.markRepeated(claim.keyframe_b);
-  }
+  for (const PlaceClaim& claim : agreed) refute(claim, host, guest);
   return {};
 }
 
