@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "opp/mapping/frontend/merge_landmarks.h"
 
+#include "opp/geometry/constants.h"
+
 #include "support/random.h"
 
 #include <gtest/gtest.h>
@@ -49,6 +51,68 @@ TEST(MergeLandmarks, JoinsWhatIsOneSurfaceAndNothingElse) {
     EXPECT_EQ(map.factors.planes[1].landmark, 0);
     EXPECT_EQ(mergeLandmarks(map, kGate), 0) << "a second call finds nothing more";
   }
+}
+
+/// Adds what a keyframe 3 m away saw of the wall z = 0 around (x, 0): 1 m², tilted by `angle` about
+/// y and moved by `height`, as a landmark of its own.
+void addDistortedView(double x, double angle, double height, MapState& map, test::Random& random) {
+  addPatch(0.0, 0.0, map, random);
+  const Eigen::Isometry3d shown_from_flat =
+      Eigen::Translation3d(x, 0.0, height) * Eigen::AngleAxisd(angle, Eigen::Vector3d::UnitY());
+  Keyframe& keyframe = map.keyframes.back();
+  const Eigen::Isometry3d map_from_old = keyframe.map_from_body;
+  keyframe.map_from_body =
+      Eigen::Translation3d(0.0, 0.0, 3.0) * Eigen::Quaterniond(random.pose(1.0).linear());
+  PointMoments& moments = map.factors.planes.back().moments_in_body;
+  moments = transformed(keyframe.map_from_body.inverse() * shown_from_flat * map_from_old, moments);
+  map.landmarks.planes.back().plane_in_map =
+      transformed(shown_from_flat, map.landmarks.planes.back().plane_in_map);
+}
+
+SensorModel distortedSensor() {
+  SensorModel sensor;
+  sensor.distortion_quadratic = 0.002;  // 18 mm and 3.4° at 3 m
+  return sensor;
+}
+
+TEST(MergeDistortedLandmarks, AWallBentAnotherWayFromEachViewIsOnePlane) {
+  for (std::uint64_t seed = 0; seed < 50; ++seed) {
+    test::Random random(seed);
+    MapState map;
+    addDistortedView(0.0, 0.0, 0.0, map, random);
+    addDistortedView(0.4, degToRad(7.5), 0.06, map, random);
+    addDistortedView(0.0, 0.0, 0.25, map, random);  // a cupboard before the wall
+    MapState undistorted = map;
+    EXPECT_EQ(mergeLandmarks(undistorted, 3.0), 0) << "noise explains none of it, seed " << seed;
+    EXPECT_EQ(mergeDistortedLandmarks(map, distortedSensor(), 3.0), 1) << "seed " << seed;
+    EXPECT_EQ(map.landmarks.planes[0].observations.size(), 2U);
+    EXPECT_EQ(map.landmarks.planes[2].observations.size(), 1U);
+    EXPECT_NEAR(map.landmarks.planes[0].plane_in_map.normal().z(), 1.0, 0.005);
+  }
+}
+
+TEST(MergeDistortedLandmarks, ALayerSeenBesideItsWallStaysALayer) {
+  test::Random random(3);
+  MapState map;
+  addDistortedView(0.0, 0.0, 0.0, map, random);
+  addDistortedView(0.4, 0.0, 0.02, map, random);
+  map.keyframes.front().landmark_of_plane.push_back(1);
+  map.factors.planes.push_back(map.factors.planes.back());
+  map.factors.planes.back().keyframe = 0;
+  map.factors.planes.back().moments_in_body =
+      transformed(map.keyframes[0].map_from_body.inverse() * map.keyframes[1].map_from_body,
+                  map.factors.planes.back().moments_in_body);
+  EXPECT_EQ(mergeDistortedLandmarks(map, distortedSensor(), 3.0), 0);
+}
+
+TEST(MergeDistortedLandmarks, ASensorWithoutDistortionExcusesNothing) {
+  test::Random random(4);
+  MapState map;
+  addDistortedView(0.0, 0.0, 0.0, map, random);
+  addDistortedView(0.4, degToRad(6.0), 0.03, map, random);
+  SensorModel sensor;
+  sensor.distortion_quadratic = 0.0;
+  EXPECT_EQ(mergeDistortedLandmarks(map, sensor, 3.0), 0);
 }
 
 TEST(MergeLandmarks, TheTwoSidesOfABoardStayTwo) {

@@ -16,9 +16,16 @@ using Index = std::size_t;
 struct Support {
   PointMoments moments;
   double effective_samples = 0.0;
+  double mean_range = 0.0;  ///< from the keyframes to what they saw [m], weighted as the samples
+  std::set<int> keyframes;  ///< that saw it
 
-  bool fits(const Plane& plane, double gate_sigmas) const {
-    return moments.squaredError(plane) <= gate_sigmas * gate_sigmas * effective_samples;
+  void merge(const Support& other) {
+    const double weight = moments.weight() + other.moments.weight();
+    mean_range =
+        (mean_range * moments.weight() + other.mean_range * other.moments.weight()) / weight;
+    moments.merge(other.moments);
+    effective_samples += other.effective_samples;
+    keyframes.insert(other.keyframes.begin(), other.keyframes.end());
   }
   /// Standard deviation of the samples along a direction [m].
   double extent(const Eigen::Vector3d& direction) const {
@@ -29,10 +36,13 @@ struct Support {
 std::vector<Support> supportsOf(const MapState& map) {
   std::vector<Support> supports(map.landmarks.planes.size());
   for (const PlaneFactor& factor : map.factors.planes) {
-    Support& support = supports[Index(factor.landmark)];
-    support.moments.merge(
-        transformed(map.keyframes[Index(factor.keyframe)].map_from_body, factor.moments_in_body));
-    support.effective_samples += factor.effective_samples;
+    if (factor.moments_in_body.empty()) continue;
+    const Keyframe& keyframe = map.keyframes[Index(factor.keyframe)];
+    supports[Index(factor.landmark)].merge(
+        {transformed(keyframe.map_from_body, factor.moments_in_body),
+         factor.effective_samples,
+         factor.moments_in_body.mean().norm(),
+         {factor.keyframe}});
   }
   return supports;
 }
@@ -48,17 +58,31 @@ bool touch(const Support& a, const Support& b) {
   return distance <= kReach * (a.extent(direction) + b.extent(direction));
 }
 
-bool areOneSurface(const Support& a, const Plane& plane_a, const Support& b, const Plane& plane_b,
-                   double gate_sigmas) {
-  // Cheap test first: surfaces that do not even roughly face the same way are two.
+/// Whether two landmarks can be one surface at all: they roughly face the same way and touch.
+bool comparable(const Support& a, const Plane& plane_a, const Support& b, const Plane& plane_b) {
   constexpr double kSameSide = 0.87;  // cos 30°
-  if (a.moments.empty() || b.moments.empty() || plane_a.normal().dot(plane_b.normal()) < kSameSide)
-    return false;
-  if (!touch(a, b)) return false;
-  PointMoments joint = a.moments;
-  joint.merge(b.moments);
-  const Plane plane = joint.fitPlane(joint.mean() + plane_a.normal());
-  return a.fits(plane, gate_sigmas) && b.fits(plane, gate_sigmas);
+  return !a.moments.empty() && !b.moments.empty() &&
+         plane_a.normal().dot(plane_b.normal()) >= kSameSide && touch(a, b);
+}
+
+/// Whether the samples lie in a plane to within their noise.
+bool fits(const Support& part, const Plane& common, double gate_sigmas) {
+  return part.moments.squaredError(common) <= gate_sigmas * gate_sigmas * part.effective_samples;
+}
+
+/// Whether distortion may be all that sets a landmark apart from a common plane.
+bool fitsDistorted(const Support& part, const Plane& own, const Plane& common,
+                   const SensorModel& sensor, double gate_sigmas) {
+  const double bend = gate_sigmas * sensor.distortion(part.mean_range);
+  const double tilt = gate_sigmas * sensor.distortionSlope(part.mean_range);
+  return part.moments.squaredError(common) - part.moments.squaredError(own) <=
+             bend * bend * part.moments.weight() &&
+         own.normal().dot(common.normal()) >= std::cos(std::min(tilt, 1.0));
+}
+
+bool seenTogether(const Support& a, const Support& b) {
+  return std::any_of(a.keyframes.begin(), a.keyframes.end(),
+                     [&](int keyframe) { return b.keyframes.count(keyframe) > 0; });
 }
 
 template <typename Factor>
@@ -124,29 +148,51 @@ void removeDuplicates(MapState& map) {
   map.landmarks.corners = std::move(corners);
 }
 
-}  // namespace
-
-int mergeLandmarks(MapState& map, double gate_sigmas) {
-  std::vector<Support> supports = supportsOf(map);
+/// Joins all pairs for which oneSurface(a, b, common plane) holds; the first arguments are indices
+/// into the list of supports.
+template <typename OneSurface>
+int mergePairs(MapState& map, std::vector<Support>& supports, const OneSurface& oneSurface) {
   int merged = 0;
   for (Index a = 0; a < supports.size(); ++a) {
     for (Index b = a + 1; b < supports.size(); ++b) {
       PlaneLandmark& older = map.landmarks.planes[a];
-      if (!areOneSurface(supports[a], older.plane_in_map, supports[b],
-                         map.landmarks.planes[b].plane_in_map, gate_sigmas)) {
+      if (!comparable(supports[a], older.plane_in_map, supports[b],
+                      map.landmarks.planes[b].plane_in_map)) {
         continue;
       }
+      PointMoments joint = supports[a].moments;
+      joint.merge(supports[b].moments);
+      const Plane common = joint.fitPlane(joint.mean() + older.plane_in_map.normal());
+      if (!oneSurface(a, b, common)) continue;
       redirect(static_cast<int>(b), static_cast<int>(a), map);
-      supports[a].moments.merge(supports[b].moments);
-      supports[a].effective_samples += supports[b].effective_samples;
+      supports[a].merge(supports[b]);
       supports[b] = {};
-      const Eigen::Vector3d mean = supports[a].moments.mean();
-      older.plane_in_map = supports[a].moments.fitPlane(mean + older.plane_in_map.normal());
+      older.plane_in_map = common;
       ++merged;
     }
   }
   if (merged > 0) removeDuplicates(map);
   return merged;
+}
+
+}  // namespace
+
+int mergeLandmarks(MapState& map, double gate_sigmas) {
+  std::vector<Support> supports = supportsOf(map);
+  return mergePairs(map, supports, [&](Index a, Index b, const Plane& common) {
+    return fits(supports[a], common, gate_sigmas) && fits(supports[b], common, gate_sigmas);
+  });
+}
+
+int mergeDistortedLandmarks(MapState& map, const SensorModel& sensor, double gate_sigmas) {
+  std::vector<Support> supports = supportsOf(map);
+  return mergePairs(map, supports, [&](Index a, Index b, const Plane& common) {
+    if (seenTogether(supports[a], supports[b])) return false;
+    return fitsDistorted(supports[a], map.landmarks.planes[a].plane_in_map, common, sensor,
+                         gate_sigmas) &&
+           fitsDistorted(supports[b], map.landmarks.planes[b].plane_in_map, common, sensor,
+                         gate_sigmas);
+  });
 }
 
 }  // namespace opp::mapping

@@ -5,6 +5,7 @@
 #include "opp/mapping/backend/settle_map.h"
 #include "opp/mapping/frontend/build_local_map.h"
 #include "opp/mapping/frontend/insert_keyframe.h"
+#include "opp/mapping/frontend/merge_landmarks.h"
 #include "opp/mapping/loop/match_place.h"
 #include "opp/mapping/loop/split_map.h"
 
@@ -145,7 +146,13 @@ void Mapper::splitParts() {
 void Mapper::finish() {
   splitParts();
   joiner_.joinAll(parts_);
-  for (MapPart& part : parts_) settleMap(part.map, 1, params_);
+  for (MapPart& part : parts_) {
+    settleMap(part.map, 1, params_);
+    if (mergeDistortedLandmarks(part.map, params_.primitives.sensor, params_.backend.kernel_width) >
+        0) {
+      updateCorners(part.map.landmarks);
+    }
+  }
   std::stable_sort(parts_.begin(), parts_.end(), [](const MapPart& a, const MapPart& b) {
     return a.map.scans.size() > b.map.scans.size();
   });

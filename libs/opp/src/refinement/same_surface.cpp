@@ -16,9 +16,6 @@ namespace {
 /// of 0.36 σ² about its own plane and of 1 σ² about the common one, 2.8 times as much. Two surfaces
 /// that `splitLayers` tells apart have at least 6 times as much.
 constexpr double kOneSurface = 4.0;
-/// Distortion is smooth: it changes by its standard deviation over this share of the range, a
-/// quarter of what a camera sees.
-constexpr double kBendLength = 0.1;
 /// Samples adjoin that lie no farther apart than this many of their extents (a diagonal is √2).
 constexpr double kAdjoin = 1.5;
 /// Pieces adjoin along at least this many pairs of samples; fewer tell nothing.
@@ -97,7 +94,7 @@ bool SameSurface::operator()(std::size_t index_a, std::size_t index_b) const {
     const double bend = sensor_.distortion(range), sigmas = params_.test_sigmas;
     fits = fits && common <= kOneSurface * own;
     bends = bends && common - own <= part->moments.weight() * std::pow(sigmas * bend, 2) &&
-            turnsBy(*part, normal, bend / (kBendLength * range), sigmas);
+            turnsBy(*part, normal, sensor_.distortionSlope(range), sigmas);
     step = std::max(step, std::sqrt(std::max(0.0, common - own) / part->moments.weight()));
   }
   if (fits) return true;

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "opp/cloud/sensor_model.h"
 #include "opp/mapping/core/map_state.h"
 
 namespace opp::mapping {
@@ -14,5 +15,12 @@ namespace opp::mapping {
 /// keeps its id but has no observations any more. Returns how many were joined. O(planes²) plus one
 /// fit per near pair.
 int mergeLandmarks(MapState& map, double gate_sigmas);
+
+/// Joins those, too, that only the sensor's distortion sets apart: a bent wall looks like another
+/// plane from each viewpoint. Their samples lie about a common plane, and they are tilted to it,
+/// within `gate_sigmas` of noise and distortion, and no keyframe saw both: one scan tells a layer
+/// from the wall behind it by the step between them. For the finished map: as measurements of one
+/// plane the pieces contradict each other and would bend the trajectory. Else as above.
+int mergeDistortedLandmarks(MapState& map, const SensorModel& sensor, double gate_sigmas);
 
 }  // namespace opp::mapping
