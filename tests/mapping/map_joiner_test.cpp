@@ -89,7 +89,7 @@ TEST(MapJoiner, BelievesMotionThatDeniesAJoin) {
     beginning.last_from_first = poseAt(15).inverse() * poseAt(40);
     beginning.last_from_first.translation().x() += aside;
     std::vector<MapPart> some = parts;
-    some[1].beginnings = {beginning};
+    some[1].history.beginnings = {beginning};
     MapJoiner(MapperParams()).joinAll(some);
     EXPECT_EQ(some.size(), aside == 0.0 ? 1U : 2U) << aside;
   }
@@ -106,7 +106,7 @@ TEST(MapJoiner, APlaceRecognizedWhereItCannotBeProvesNothing) {
   // The third sees the room too. That the second is another room like it takes away the proof.
   for (const bool repeats : {false, true}) {
     std::vector<MapPart> parts = {partOf(room, 0, 0), partOf(room, 1, 40), partOf(room, 2, 80)};
-    if (repeats) parts[1].beginnings = {elsewhere};
+    if (repeats) parts[1].history.beginnings = {elsewhere};
     MapJoiner(MapperParams()).joinAll(parts);
     EXPECT_EQ(parts.size(), repeats ? 3U : 1U);
   }
@@ -115,7 +115,7 @@ TEST(MapJoiner, APlaceRecognizedWhereItCannotBeProvesNothing) {
 TEST(MapJoiner, DoesNotCompareWhatWasTakenAsunder) {
   const test::Rectangles room = test::furnishedRoom(1);
   std::vector<MapPart> parts = {partOf(room, 0, 0), partOf(room, 1, 40)};
-  parts[1].origins = parts[0].origins;
+  parts[1].history.origins = parts[0].history.origins;
   MapJoiner(MapperParams()).joinAll(parts);
   EXPECT_EQ(parts.size(), 2U);
 }

@@ -64,15 +64,19 @@ bool excludesHalfTurn(const PosePrior& prior) {
   return kPi * kPi * rotation.eigenvalues()[0] >= kClearly;
 }
 
+/// Variance of the position in its worst direction [m²].
+double positionVariance(const PosePrior& prior) {
+  const Matrix6d covariance = prior.information.inverse();
+  return largestVariance(covariance.bottomRightCorner<3, 3>());
+}
+
 }  // namespace
 
 /// Whether a prediction says enough to look for the body in the same map: repeating rooms and
 /// symmetric halls offer other places.
 bool Tracker::guides(const PosePrior& predicted) const {
-  const Matrix6d covariance = predicted.information.inverse();
   const double farthest = params_.frontend.max_gap * params_.frontend.speed;
-  return excludesHalfTurn(predicted) &&
-         largestVariance(covariance.bottomRightCorner<3, 3>()) <= farthest * farthest;
+  return excludesHalfTurn(predicted) && positionVariance(predicted) <= farthest * farthest;
 }
 
 TrackResult Tracker::track(const ScanFeatures& scan,
@@ -141,9 +145,9 @@ bool Tracker::convincing(const MatchResult& match) const {
 TrackOutcome Tracker::outcomeOf(const MatchResult& match, const ScanFeatures& scan,
                                 const PosePrior& moved, const Keyframe& newest) const {
   if (match.overlap < params_.frontend.min_overlap) return TrackOutcome::kLittleOverlap;
-  const Vector6d step = difference(moved.map_from_body, match.map_from_body);
   const double max_jump = params_.frontend.max_jump;
-  if (step.dot(moved.information * step) > max_jump * max_jump) return TrackOutcome::kImplausible;
+  if (moved.squaredSigmas(match.map_from_body) > max_jump * max_jump)
+    return TrackOutcome::kImplausible;
   // A wrong pose can agree with a good part of a map: the floor fits at many places.
   if (!convincing(match) && contradicts(match.map_from_body, scan, newest))
     return TrackOutcome::kContradicted;
@@ -169,9 +173,8 @@ bool Tracker::contradicts(const Eigen::Isometry3d& map_from_body, const ScanFeat
 
 bool Tracker::surprises(const PosePrior& predicted, const ScanFeatures& scan,
                         const Keyframe& newest) const {
-  const Matrix6d covariance = predicted.information.inverse();
   const double max_drift = params_.frontend.max_drift_translation;
-  return largestVariance(covariance.bottomRightCorner<3, 3>()) <= max_drift * max_drift &&
+  return positionVariance(predicted) <= max_drift * max_drift &&
          contradicts(predicted.map_from_body, scan, newest);
 }
 
@@ -206,8 +209,7 @@ std::optional<Eigen::Isometry3d> likeliest(const std::vector<Eigen::Isometry3d>&
   double best = std::numeric_limits<double>::infinity(), second = best;
   std::optional<Eigen::Isometry3d> result;
   for (const Eigen::Isometry3d& pose : poses) {
-    const Vector6d step = difference(prior.map_from_body, pose);
-    const double squared_sigmas = step.dot(prior.information * step);
+    const double squared_sigmas = prior.squaredSigmas(pose);
     if (squared_sigmas < best) {
       second = std::exchange(best, squared_sigmas);
       result = pose;

@@ -80,7 +80,8 @@ std::vector<MapJoiner::Candidate> MapJoiner::candidates(const std::vector<MapPar
                                                         const Primitives& primitives) const {
   std::vector<Candidate> ranked;
   for (Index p = 0; p < parts.size(); ++p) {
-    if (parts[p].id >= parts[claimant].id || haveCommon(parts[p].origins, parts[claimant].origins))
+    if (parts[p].id >= parts[claimant].id ||
+        haveCommon(parts[p].history.origins, parts[claimant].history.origins))
       continue;
     const std::vector<double> likeness = parts[p].index.likeness(primitives);
     for (Index k = 0; k < likeness.size(); ++k) {
@@ -155,11 +156,8 @@ bool MapJoiner::joinAgreed(std::vector<MapPart>& parts, Index claimant) {
     }
     ++host.map.loop_closures;
     settleMap(host.map, 1, params_);
-    for (Index k = Index(first); k < host.map.keyframes.size(); ++k)
-      host.index.add(host.map.keyframes[k].features.primitives_in_body);
-    host.origins.insert(guest.origins.begin(), guest.origins.end());
-    host.beginnings.insert(host.beginnings.end(), guest.beginnings.begin(), guest.beginnings.end());
-    host.repeated.insert(guest.repeated.begin(), guest.repeated.end());
+    host.indexFrom(Index(first));
+    host.history.merge(guest.history);
     MapPart joined = std::move(host);
     parts.erase(parts.begin() + static_cast<std::ptrdiff_t>(std::max(p, claimant)));
     parts.erase(parts.begin() + static_cast<std::ptrdiff_t>(std::min(p, claimant)));

@@ -35,9 +35,10 @@ bool expectedBy(const ExpectedBeginning& beginning, const MapState& a, const Map
 /// The same for all beginnings of `later`.
 bool expectedBegin(const MapState& earlier, const MapPart& later,
                    const Eigen::Isometry3d& earlier_from_later) {
-  return std::all_of(later.beginnings.begin(), later.beginnings.end(), [&](const auto& beginning) {
-    return expectedBy(beginning, earlier, later.map, earlier_from_later);
-  });
+  return std::all_of(later.history.beginnings.begin(), later.history.beginnings.end(),
+                     [&](const auto& beginning) {
+                       return expectedBy(beginning, earlier, later.map, earlier_from_later);
+                     });
 }
 
 /// Whether the body can have moved so far in the time between the parts.
@@ -61,18 +62,29 @@ bool reachable(const MapState& a, const MapState& b, const Eigen::Isometry3d& a_
 
 }  // namespace
 
+void PartHistory::merge(const PartHistory& other) {
+  origins.insert(other.origins.begin(), other.origins.end());
+  beginnings.insert(beginnings.end(), other.beginnings.begin(), other.beginnings.end());
+  repeated.insert(other.repeated.begin(), other.repeated.end());
+}
+
+void MapPart::indexFrom(std::size_t first_keyframe) {
+  for (std::size_t k = first_keyframe; k < map.keyframes.size(); ++k)
+    index.add(map.keyframes[k].features.primitives_in_body);
+}
+
 bool MapPart::seesRepeated(int keyframe, double reach) const {
-  if (repeated.empty()) return false;
+  if (history.repeated.empty()) return false;
   const Eigen::Vector3d view = map.keyframes[static_cast<std::size_t>(keyframe)].viewCentre();
   return std::any_of(map.keyframes.begin(), map.keyframes.end(), [&](const Keyframe& other) {
-    return repeated.count({other.features.session, other.features.scan_index}) > 0 &&
+    return history.repeated.count({other.features.session, other.features.scan_index}) > 0 &&
            (other.viewCentre() - view).norm() <= reach;
   });
 }
 
 void MapPart::markRepeated(int keyframe) {
   const ScanFeatures& features = map.keyframes[static_cast<std::size_t>(keyframe)].features;
-  repeated.insert({features.session, features.scan_index});
+  history.repeated.insert({features.session, features.scan_index});
 }
 
 bool motionAllows(const MapPart& a, const MapPart& b, const Eigen::Isometry3d& a_from_b,

@@ -67,7 +67,7 @@ FrameResult Mapper::begin(ScanFeatures scan,
   MapPart part(next_part_++, params_.loop);
   if (continues_) {
     if (const auto beginning = expectedBeginning(scan, odom_from_body))
-      part.beginnings.push_back(*beginning);
+      part.history.beginnings.push_back(*beginning);
   }
   parts_.push_back(std::move(part));
   MatchResult match;
@@ -132,12 +132,9 @@ void Mapper::splitParts() {
     }
     for (MapState& map : maps) {
       parts.emplace_back(next_part_++, params_.loop);
-      parts.back().origins = part.origins;
-      parts.back().beginnings = part.beginnings;
-      parts.back().repeated = part.repeated;
-      for (const Keyframe& keyframe : map.keyframes)
-        parts.back().index.add(keyframe.features.primitives_in_body);
+      parts.back().history = part.history;
       parts.back().map = std::move(map);
+      parts.back().indexFrom(0);
     }
   }
   parts_ = std::move(parts);

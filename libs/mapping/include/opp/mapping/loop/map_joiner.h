@@ -18,8 +18,8 @@ namespace opp::mapping {
 /// pose that is found is a claim. Parts are joined when several keyframes make the same claim
 /// (ClaimPool), the keyframes of both do not stand in each other's free space under it, and the
 /// body could have moved so in the time between. A place that is recognized where one of these says
-/// that it cannot be has others like it, and proves nothing (MapPart::repeated). What is not proven
-/// stays apart.
+/// that it cannot be has others like it, and proves nothing (PartHistory::repeated). What is not
+/// proven stays apart.
 class MapJoiner {
  public:
   explicit MapJoiner(const MapperParams& params) : params_(params) {}

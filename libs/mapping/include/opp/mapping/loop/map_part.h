@@ -23,16 +23,8 @@ struct ExpectedBeginning {
   Matrix6d information = Matrix6d::Zero();  ///< of (ω, v) in the axes of the last body frame
 };
 
-/// A map that grew on its own: a session, or what came after the body was lost.
-struct MapPart {
-  explicit MapPart(int part_id, const LoopParams& params)
-      : id(part_id), origins({part_id}), index(params.word_width) {}
-
-  /// Whether the keyframe sees a place of `repeated`: one within `reach` of its view [m].
-  bool seesRepeated(int keyframe, double reach) const;
-  void markRepeated(int keyframe);
-
-  int id;  ///< in the order of their beginnings; stays when others join it
+/// What is known of a part beside its map.
+struct PartHistory {
   /// Ids of the maps that its keyframes grew in. Two parts of one map were compared as it grew,
   /// with more known than is now: they are not compared again.
   std::set<int> origins;
@@ -40,13 +32,31 @@ struct MapPart {
   /// Session and scan index of keyframes whose place looks like another: it was recognized where it
   /// cannot be. To recognize it proves nothing.
   std::set<std::pair<int, std::size_t>> repeated;
+
+  void merge(const PartHistory& other);
+};
+
+/// A map that grew on its own: a session, or what came after the body was lost.
+struct MapPart {
+  explicit MapPart(int part_id, const LoopParams& params)
+      : id(part_id), history{{part_id}, {}, {}}, index(params.word_width) {}
+
+  /// Makes the map's keyframes from the given one on known to the index.
+  void indexFrom(std::size_t first_keyframe);
+  /// Whether the keyframe sees a place of PartHistory::repeated: one within `reach` of its view
+  /// [m].
+  bool seesRepeated(int keyframe, double reach) const;
+  void markRepeated(int keyframe);
+
+  int id;  ///< in the order of their beginnings; stays when others join it
+  PartHistory history;
   MapState map;
   ConstellationIndex index;  ///< of all keyframes
 };
 
 /// Whether the body can have got from the one part to the other if `a_from_b` is right: within a
 /// session it moves at most at some times its typical speed, and begins a part where it was
-/// expected (`MapPart::beginnings`). O(scans).
+/// expected (`PartHistory::beginnings`). O(scans).
 bool motionAllows(const MapPart& a, const MapPart& b, const Eigen::Isometry3d& a_from_b,
                   const MapperParams& params);
 

@@ -17,6 +17,12 @@ struct PosePrior {
   Eigen::Isometry3d map_from_body = Eigen::Isometry3d::Identity();
   Matrix6d information =
       Matrix6d::Zero();  ///< of (ω, v), see `retract` [1/rad², 1/m²]; zero: unknown
+
+  /// Squared Mahalanobis distance of a pose to it.
+  double squaredSigmas(const Eigen::Isometry3d& pose) const {
+    const Vector6d step = difference(map_from_body, pose);
+    return step.dot(information * step);
+  }
 };
 
 /// A plane of the scan that is a plane landmark of the map.
