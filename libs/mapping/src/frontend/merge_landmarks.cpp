@@ -2,8 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "opp/mapping/frontend/merge_landmarks.h"
 
+#include "frontend/landmark_support.h"
+
 #include <algorithm>
-#include <cmath>
 #include <set>
 #include <vector>
 
@@ -11,79 +12,6 @@ namespace opp::mapping {
 namespace {
 
 using Index = std::size_t;
-
-/// All samples of a landmark in the map's frame.
-struct Support {
-  PointMoments moments;
-  double effective_samples = 0.0;
-  double mean_range = 0.0;  ///< from the keyframes to what they saw [m], weighted as the samples
-  std::set<int> keyframes;  ///< that saw it
-
-  void merge(const Support& other) {
-    const double weight = moments.weight() + other.moments.weight();
-    mean_range =
-        (mean_range * moments.weight() + other.mean_range * other.moments.weight()) / weight;
-    moments.merge(other.moments);
-    effective_samples += other.effective_samples;
-    keyframes.insert(other.keyframes.begin(), other.keyframes.end());
-  }
-  /// Standard deviation of the samples along a direction [m].
-  double extent(const Eigen::Vector3d& direction) const {
-    return std::sqrt(direction.dot(moments.scatter() * direction) / moments.weight());
-  }
-};
-
-std::vector<Support> supportsOf(const MapState& map) {
-  std::vector<Support> supports(map.landmarks.planes.size());
-  for (const PlaneFactor& factor : map.factors.planes) {
-    if (factor.moments_in_body.empty()) continue;
-    const Keyframe& keyframe = map.keyframes[Index(factor.keyframe)];
-    supports[Index(factor.landmark)].merge(
-        {transformed(keyframe.map_from_body, factor.moments_in_body),
-         factor.effective_samples,
-         factor.moments_in_body.mean().norm(),
-         {factor.keyframe}});
-  }
-  return supports;
-}
-
-/// Whether two patches in one plane touch. An even patch reaches √3 standard deviations from its
-/// centre; a quarter more allows for what occlusion leaves out between them.
-bool touch(const Support& a, const Support& b) {
-  constexpr double kReach = 1.25 * 1.7320508;
-  const Eigen::Vector3d between = b.moments.mean() - a.moments.mean();
-  const double distance = between.norm();
-  if (distance < 1e-9) return true;
-  const Eigen::Vector3d direction = between / distance;
-  return distance <= kReach * (a.extent(direction) + b.extent(direction));
-}
-
-/// Whether two landmarks can be one surface at all: they roughly face the same way and touch.
-bool comparable(const Support& a, const Plane& plane_a, const Support& b, const Plane& plane_b) {
-  constexpr double kSameSide = 0.87;  // cos 30°
-  return !a.moments.empty() && !b.moments.empty() &&
-         plane_a.normal().dot(plane_b.normal()) >= kSameSide && touch(a, b);
-}
-
-/// Whether the samples lie in a plane to within their noise.
-bool fits(const Support& part, const Plane& common, double gate_sigmas) {
-  return part.moments.squaredError(common) <= gate_sigmas * gate_sigmas * part.effective_samples;
-}
-
-/// Whether distortion may be all that sets a landmark apart from a common plane.
-bool fitsDistorted(const Support& part, const Plane& own, const Plane& common,
-                   const SensorModel& sensor, double gate_sigmas) {
-  const double bend = gate_sigmas * sensor.distortion(part.mean_range);
-  const double tilt = gate_sigmas * sensor.distortionSlope(part.mean_range);
-  return part.moments.squaredError(common) - part.moments.squaredError(own) <=
-             bend * bend * part.moments.weight() &&
-         own.normal().dot(common.normal()) >= std::cos(std::min(tilt, 1.0));
-}
-
-bool seenTogether(const Support& a, const Support& b) {
-  return std::any_of(a.keyframes.begin(), a.keyframes.end(),
-                     [&](int keyframe) { return b.keyframes.count(keyframe) > 0; });
-}
 
 template <typename Factor>
 void redirectPairs(int from, int to, std::vector<Factor>& factors) {
@@ -148,22 +76,23 @@ void removeDuplicates(MapState& map) {
   map.landmarks.corners = std::move(corners);
 }
 
-/// Joins all pairs for which oneSurface(a, b, common plane) holds; the first arguments are indices
-/// into the list of supports.
-template <typename OneSurface>
-int mergePairs(MapState& map, std::vector<Support>& supports, const OneSurface& oneSurface) {
+/// Joins all pairs, of ids a < b, for which onePlane(a, b, common plane) holds.
+template <typename OnePlane>
+int mergePairs(MapState& map, std::vector<LandmarkSupport>& supports, const OnePlane& onePlane) {
   int merged = 0;
   for (Index a = 0; a < supports.size(); ++a) {
     for (Index b = a + 1; b < supports.size(); ++b) {
+      // Cheap test first: surfaces that do not even roughly face the same way are two.
+      constexpr double kSameSide = 0.87;  // cos 30°
       PlaneLandmark& older = map.landmarks.planes[a];
-      if (!comparable(supports[a], older.plane_in_map, supports[b],
-                      map.landmarks.planes[b].plane_in_map)) {
+      const Eigen::Vector3d& normal = older.plane_in_map.normal();
+      if (supports[a].moments.empty() || supports[b].moments.empty() ||
+          normal.dot(map.landmarks.planes[b].plane_in_map.normal()) < kSameSide)
         continue;
-      }
       PointMoments joint = supports[a].moments;
       joint.merge(supports[b].moments);
-      const Plane common = joint.fitPlane(joint.mean() + older.plane_in_map.normal());
-      if (!oneSurface(a, b, common)) continue;
+      const Plane common = joint.fitPlane(joint.mean() + normal);
+      if (!onePlane(a, b, common)) continue;
       redirect(static_cast<int>(b), static_cast<int>(a), map);
       supports[a].merge(supports[b]);
       supports[b] = {};
@@ -178,20 +107,23 @@ int mergePairs(MapState& map, std::vector<Support>& supports, const OneSurface& 
 }  // namespace
 
 int mergeLandmarks(MapState& map, double gate_sigmas) {
-  std::vector<Support> supports = supportsOf(map);
+  std::vector<LandmarkSupport> supports = supportsOf(map);
   return mergePairs(map, supports, [&](Index a, Index b, const Plane& common) {
-    return fits(supports[a], common, gate_sigmas) && fits(supports[b], common, gate_sigmas);
+    return touch(supports[a], supports[b]) && fits(supports[a], common, gate_sigmas) &&
+           fits(supports[b], common, gate_sigmas);
   });
 }
 
-int mergeDistortedLandmarks(MapState& map, const SensorModel& sensor, double gate_sigmas) {
-  std::vector<Support> supports = supportsOf(map);
+int unifyPlanes(MapState& map, const SensorModel& sensor, const BackendParams& params) {
+  std::vector<LandmarkSupport> supports = supportsOf(map);
   return mergePairs(map, supports, [&](Index a, Index b, const Plane& common) {
-    if (seenTogether(supports[a], supports[b])) return false;
-    return fitsDistorted(supports[a], map.landmarks.planes[a].plane_in_map, common, sensor,
-                         gate_sigmas) &&
-           fitsDistorted(supports[b], map.landmarks.planes[b].plane_in_map, common, sensor,
-                         gate_sigmas);
+    const auto distorted = [&](Index k) {
+      return fitsDistorted(supports[k], map.landmarks.planes[k].plane_in_map, common, sensor,
+                           params.kernel_width);
+    };
+    return coplanar(supports[a], supports[b], common, params.coplanar_resolution) ||
+           (touch(supports[a], supports[b]) && !seenTogether(supports[a], supports[b]) &&
+            distorted(a) && distorted(b));
   });
 }
 

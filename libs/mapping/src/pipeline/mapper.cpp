@@ -145,10 +145,8 @@ void Mapper::finish() {
   joiner_.joinAll(parts_);
   for (MapPart& part : parts_) {
     settleMap(part.map, 1, params_);
-    if (mergeDistortedLandmarks(part.map, params_.primitives.sensor, params_.backend.kernel_width) >
-        0) {
+    if (unifyPlanes(part.map, params_.primitives.sensor, params_.backend) > 0)
       updateCorners(part.map.landmarks);
-    }
   }
   std::stable_sort(parts_.begin(), parts_.end(), [](const MapPart& a, const MapPart& b) {
     return a.map.scans.size() > b.map.scans.size();

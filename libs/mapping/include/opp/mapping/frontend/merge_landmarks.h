@@ -3,6 +3,7 @@
 #pragma once
 
 #include "opp/cloud/sensor_model.h"
+#include "opp/mapping/backend/backend_params.h"
 #include "opp/mapping/core/map_state.h"
 
 namespace opp::mapping {
@@ -16,11 +17,15 @@ namespace opp::mapping {
 /// fit per near pair.
 int mergeLandmarks(MapState& map, double gate_sigmas);
 
-/// Joins those, too, that only the sensor's distortion sets apart: a bent wall looks like another
-/// plane from each viewpoint. Their samples lie about a common plane, and they are tilted to it,
-/// within `gate_sigmas` of noise and distortion, and no keyframe saw both: one scan tells a layer
-/// from the wall behind it by the step between them. For the finished map: as measurements of one
-/// plane the pieces contradict each other and would bend the trajectory. Else as above.
-int mergeDistortedLandmarks(MapState& map, const SensorModel& sensor, double gate_sigmas);
+/// For the finished map, joins those, too, that stand for one plane of the scene:
+/// - parts of one plane, wherever they lie, that are known so well that their agreement proves it
+///   (`BackendParams::coplanar_resolution`): a wall beyond a doorway;
+/// - what only the sensor's distortion sets apart: a bent wall looks like another plane from each
+///   viewpoint. Their samples lie about a common plane, and they are tilted to it, within
+///   `BackendParams::kernel_width` times the distortion, they touch, and no keyframe saw both: one
+///   scan tells a layer from the wall behind it by the step between them.
+/// Not while the map grows: as measurements of one plane, bent pieces would bend the trajectory.
+/// Returns how many were joined. O(planes²).
+int unifyPlanes(MapState& map, const SensorModel& sensor, const BackendParams& params);
 
 }  // namespace opp::mapping
