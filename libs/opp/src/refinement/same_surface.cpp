@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <tuple>
 
 namespace opp {
@@ -39,6 +38,7 @@ bool turnsBy(const PlaneFit& part, const Eigen::Vector3d& normal, double slope, 
 
 /// A sample in the frame of the common plane.
 struct Place {
+  double row = 0.0;    ///< of strips along the plane, as wide as samples reach that adjoin
   double along = 0.0;  ///< in the plane [m]
   double across = 0.0;
   double offset = 0.0;  ///< from the plane [m]
@@ -47,16 +47,31 @@ struct Place {
   int side = 0;   ///< sum of the labels of the samples that adjoin
 };
 
-/// visit(i, j), i before j, for all samples that adjoin; `places` ascend along the plane.
+bool adjoin(const Place& a, const Place& b) {
+  const double along = b.along - a.along, across = b.across - a.across;
+  const double extent = std::max(a.squared_extent, b.squared_extent);
+  return along * along + across * across <= kAdjoin * kAdjoin * extent;
+}
+
+/// visit(i, j), i before j, for all samples that adjoin; they are in the same or in the next row.
+/// `places` ascend by row, then along it; `reach` is what samples adjoin within [m].
 template <typename Visit>
-void visitAdjoining(const std::vector<Place>& places, double widest, const Visit& visit) {
+void visitAdjoining(const std::vector<Place>& places, double reach, const Visit& visit) {
+  std::size_t next = 0;  // the first in the next row that may adjoin
   for (std::size_t i = 0; i < places.size(); ++i) {
-    for (std::size_t j = i + 1; j < places.size(); ++j) {
-      const double along = places[j].along - places[i].along;
-      if (along > kAdjoin * widest) break;
-      const double across = places[j].across - places[i].across;
-      const double extent = std::max(places[i].squared_extent, places[j].squared_extent);
-      if (along * along + across * across <= kAdjoin * kAdjoin * extent) visit(i, j);
+    const Place& place = places[i];
+    const auto before = [&](const Place& other) {
+      return other.row < place.row + 1.0 ||
+             (other.row == place.row + 1.0 && other.along < place.along - reach);
+    };
+    for (std::size_t j = i + 1; j < places.size() && places[j].row == place.row; ++j) {
+      if (places[j].along > place.along + reach) break;
+      if (adjoin(place, places[j])) visit(i, j);
+    }
+    while (next < places.size() && before(places[next])) ++next;
+    for (std::size_t j = next; j < places.size() && places[j].row == place.row + 1.0; ++j) {
+      if (places[j].along > place.along + reach) break;
+      if (adjoin(place, places[j])) visit(i, j);
     }
   }
 }
@@ -69,13 +84,10 @@ SameSurface::SameSurface(const std::vector<PlaneFit>& fits,
                          const RefinementParams& params)
     : fits_(fits),
       samples_(samples),
-      labels_(labels),
       viewpoint_(viewpoint),
       sensor_(sensor),
       params_(params),
-      whole_of_(fits.size()) {
-  std::iota(whole_of_.begin(), whole_of_.end(), std::size_t{0});
-}
+      members_(membersOf(labels, fits.size())) {}
 
 bool SameSurface::operator()(std::size_t index_a, std::size_t index_b) const {
   const PlaneFit &a = fits_[index_a], &b = fits_[index_b];
@@ -106,25 +118,27 @@ bool SameSurface::goesOn(std::size_t a, std::size_t b, const Eigen::Vector3d& no
   const Eigen::Matrix<double, 3, 2> tangents = tangentBasis(normal);
   std::vector<Place> places;
   double widest = 0.0;
-  for (std::size_t i = 0; i < samples_.size(); ++i) {
-    if (labels_[i] < 0) continue;
-    const std::size_t plane = whole_of_[static_cast<std::size_t>(labels_[i])];
-    if (plane != a && plane != b) continue;
-    const WeightedSample& sample = samples_[i];
-    places.push_back({tangents.col(0).dot(sample.point), tangents.col(1).dot(sample.point),
-                      normal.dot(sample.point), sample.area, plane == a ? 1 : -1, 0});
-    widest = std::max(widest, std::sqrt(sample.area));
+  for (const std::size_t plane : {a, b}) {
+    for (const std::uint32_t i : members_[plane]) {
+      const WeightedSample& sample = samples_[i];
+      places.push_back({0.0, tangents.col(0).dot(sample.point), tangents.col(1).dot(sample.point),
+                        normal.dot(sample.point), sample.area, plane == a ? 1 : -1, 0});
+      widest = std::max(widest, std::sqrt(sample.area));
+    }
   }
+  const double reach = kAdjoin * widest;
+  if (!(reach > 0.0)) return false;  // samples without an extent adjoin nothing
+  for (Place& place : places) place.row = std::floor(place.across / reach);
   std::sort(places.begin(), places.end(), [](const Place& p, const Place& q) {
-    return std::tie(p.along, p.across) < std::tie(q.along, q.across);
+    return std::tie(p.row, p.along, p.across) < std::tie(q.row, q.along, q.across);
   });
-  visitAdjoining(places, widest, [&](std::size_t i, std::size_t j) {
+  visitAdjoining(places, reach, [&](std::size_t i, std::size_t j) {
     places[i].side += places[j].label;
     places[j].side += places[i].label;
   });
   // A sample's own label depends on its own error, which would show as a step.
   double pairs = 0.0, jumps = 0.0;
-  visitAdjoining(places, widest, [&](std::size_t i, std::size_t j) {
+  visitAdjoining(places, reach, [&](std::size_t i, std::size_t j) {
     if (places[i].side == 0 || places[j].side == 0) return;
     if ((places[i].side > 0) == (places[j].side > 0)) return;
     const double jump = places[j].offset - places[i].offset;
@@ -134,6 +148,9 @@ bool SameSurface::goesOn(std::size_t a, std::size_t b, const Eigen::Vector3d& no
   return pairs >= kLeastPairs && std::abs(jumps) < kStep * step * pairs;
 }
 
-void SameSurface::merge(std::size_t part, std::size_t whole) { whole_of_[part] = whole; }
+void SameSurface::merge(std::size_t part, std::size_t whole) {
+  members_[whole].insert(members_[whole].end(), members_[part].begin(), members_[part].end());
+  members_[part].clear();
+}
 
 }  // namespace opp

@@ -8,6 +8,7 @@
 #include "refinement/sample_assignment.h"
 
 #include <cstddef>
+#include <cstdint>
 #include <vector>
 
 namespace opp {
@@ -17,14 +18,14 @@ namespace opp {
 /// A bent surface goes on where its pieces adjoin; a layer upon another steps there.
 class SameSurface {
  public:
-  /// `labels`: plane of each sample, −1: none. All but the viewpoint are kept by reference; fits
-  /// may change, but not their number.
+  /// `labels`: plane of each sample, −1: none. Fits, samples, sensor and parameters are kept by
+  /// reference; fits may change, but not their number.
   SameSurface(const std::vector<PlaneFit>& fits, const std::vector<WeightedSample>& samples,
               const std::vector<int>& labels, const Eigen::Vector3d& viewpoint,
               const SensorModel& sensor, const RefinementParams& params);
 
   /// Planes number `a` and `b`. O(1) where one plane does not fit both within noise and distortion,
-  /// else O(samples + n log n) for n samples of the two.
+  /// else O(n log n) for n samples of the two.
   bool operator()(std::size_t a, std::size_t b) const;
 
   /// From now on the samples of `part` count as samples of `whole`.
@@ -35,11 +36,10 @@ class SameSurface {
 
   const std::vector<PlaneFit>& fits_;
   const std::vector<WeightedSample>& samples_;
-  const std::vector<int>& labels_;
   Eigen::Vector3d viewpoint_;
   const SensorModel& sensor_;
   const RefinementParams& params_;
-  std::vector<std::size_t> whole_of_;  ///< the plane that each plane's samples count for
+  std::vector<std::vector<std::uint32_t>> members_;  ///< samples that count for each plane
 };
 
 }  // namespace opp

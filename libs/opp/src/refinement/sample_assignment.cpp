@@ -40,6 +40,16 @@ std::vector<WeightedSample> weightedSamples(const OrientedCloud& cloud, const Se
   return samples;
 }
 
+std::vector<std::vector<std::uint32_t>> membersOf(const std::vector<int>& labels,
+                                                  std::size_t planes) {
+  std::vector<std::vector<std::uint32_t>> members(planes);
+  for (std::size_t i = 0; i < labels.size(); ++i) {
+    if (labels[i] < 0) continue;
+    members[static_cast<std::size_t>(labels[i])].push_back(static_cast<std::uint32_t>(i));
+  }
+  return members;
+}
+
 PointMoments SampleSums::moments() const {
   if (!(weight > 0.0)) return {};
   const Eigen::Vector3d mean = first / weight;

@@ -24,6 +24,10 @@ struct WeightedSample {
 
 std::vector<WeightedSample> weightedSamples(const OrientedCloud& cloud, const SensorModel& sensor);
 
+/// The samples of each of `planes` planes, ascending, from the plane of each sample (−1: none).
+std::vector<std::vector<std::uint32_t>> membersOf(const std::vector<int>& labels,
+                                                  std::size_t planes);
+
 /// Sums over the samples of a plane; ω is Tukey's weight in (0, 1].
 struct SampleSums {
   Eigen::Vector3d origin = Eigen::Vector3d::Zero();  ///< of the coordinates below, near the mean

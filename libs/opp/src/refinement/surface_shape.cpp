@@ -55,11 +55,10 @@ bool turns(const TurnSums& sums, const RefinementParams& params) {
 /// Samples of one plane, in two layers.
 class Layers {
  public:
-  Layers(const std::vector<WeightedSample>& samples, const std::vector<int>& labels, int label,
+  Layers(const std::vector<WeightedSample>& samples, const std::vector<std::uint32_t>& members,
          const PlaneFit& fit)
       : normal_(fit.plane.normal()), reach_(fit.reach) {
-    for (std::size_t i = 0; i < samples.size(); ++i) {
-      if (labels[i] != label) continue;
+    for (const std::uint32_t i : members) {
       members_.push_back(&samples[i]);
       upper_.push_back(fit.plane.signedDistance(samples[i].point) > 0.0);
     }
@@ -70,7 +69,7 @@ class Layers {
     bool changed = true;
     for (int step = 0; step < kMaxSplitSteps && changed; ++step) {
       fit();
-      if (!(separation() > kHopeless)) break;
+      if (!(separation() > kHopeless)) return;
       const double middle = 0.5 * (positionOf(0) + positionOf(1));
       changed = false;
       for (std::size_t i = 0; i < members_.size(); ++i) {
@@ -158,10 +157,10 @@ void markCurved(const std::vector<WeightedSample>& samples, const std::vector<in
 }
 
 std::optional<std::array<PlaneFit, 2>> splitLayers(const std::vector<WeightedSample>& samples,
-                                                   const std::vector<int>& labels, int label,
+                                                   const std::vector<std::uint32_t>& members,
                                                    const PlaneFit& fit,
                                                    const RefinementParams& params) {
-  Layers layers(samples, labels, label, fit);
+  Layers layers(samples, members, fit);
   layers.separate();
   if (!layers.distinct(params)) return std::nullopt;
   return layers.fits();
@@ -171,9 +170,10 @@ bool splitPlanes(const std::vector<WeightedSample>& samples, const std::vector<i
                  const RefinementParams& params, std::vector<PlaneFit>& fits,
                  std::vector<OrthogonalityEdge>& edges) {
   const std::size_t count = fits.size();
+  const auto members = membersOf(labels, count);
   for (std::size_t k = 0; k < count; ++k) {
     if (fits[k].slack <= 0.0) continue;
-    auto layers = splitLayers(samples, labels, static_cast<int>(k), fits[k], params);
+    auto layers = splitLayers(samples, members[k], fits[k], params);
     if (!layers) continue;
     fits[k] = (*layers)[0];
     const int half = static_cast<int>(fits.size());

@@ -8,6 +8,7 @@
 #include "refinement/sample_assignment.h"
 
 #include <array>
+#include <cstdint>
 #include <optional>
 #include <vector>
 
@@ -18,11 +19,11 @@ namespace opp {
 void markCurved(const std::vector<WeightedSample>& samples, const std::vector<int>& labels,
                 const RefinementParams& params, std::vector<PlaneFit>& fits);
 
-/// Two parallel surfaces that the plane `label` was fitted between (a cupboard's back on a wall),
-/// the larger first; nothing if its samples do not fall in two clearly separate layers of at least
-/// `min_support` samples each.
+/// Two parallel surfaces that a plane was fitted between (a cupboard's back on a wall), the larger
+/// first; nothing if its samples, the `members`, do not fall in two clearly separate layers of at
+/// least `min_support` samples each.
 std::optional<std::array<PlaneFit, 2>> splitLayers(const std::vector<WeightedSample>& samples,
-                                                   const std::vector<int>& labels, int label,
+                                                   const std::vector<std::uint32_t>& members,
                                                    const PlaneFit& fit,
                                                    const RefinementParams& params);
 
