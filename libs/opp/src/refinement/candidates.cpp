@@ -74,6 +74,13 @@ Candidates findCandidates(const SampleBlocks& blocks, const std::vector<Weighted
   candidates.entries.resize(found.size());
   std::vector<std::uint32_t> next(candidates.begin.begin(), candidates.begin.end() - 1);
   for (const auto& [sample, entry] : found) candidates.entries[next[sample]++] = entry;
+  candidates.uncontested.resize(fits.size());
+  for (std::uint32_t i = 0; i < samples.size(); i += static_cast<std::uint32_t>(stride)) {
+    const std::uint32_t first = candidates.begin[i];
+    const bool single = candidates.begin[i + 1] == first + 1;
+    (single ? candidates.uncontested[candidates.entries[first].plane] : candidates.others)
+        .push_back(i);
+  }
   findRivals(fits.size(), candidates);
   return candidates;
 }

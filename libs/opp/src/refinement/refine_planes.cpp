@@ -107,7 +107,7 @@ class Refiner {
     const Candidates candidates =
         findCandidates(blocks_, samples_, groupsOf(single), fits_, params_, stride);
     for (int pass = 0; pass < kCoarsePasses; ++pass) {
-      assignSamples(samples_, candidates, params_, stride, fits_, labels_);
+      assignSamples(samples_, candidates, params_, fits_, labels_);
       bool rest = true;
       for (PlaneFit& fit : fits_) {
         if (fit.sums.support < kLeastCoarseSupport) continue;
@@ -124,7 +124,7 @@ class Refiner {
     const Candidates candidates =
         findCandidates(blocks_, samples_, groupsOf(structure_.families), fits_, params_, 1);
     for (int pass = 0; pass < max_passes; ++pass) {
-      assignSamples(samples_, candidates, params_, 1, fits_, labels_);
+      assignSamples(samples_, candidates, params_, fits_, labels_);
       converged_ = solve();
       if (converged_) return;
     }

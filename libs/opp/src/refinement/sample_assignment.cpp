@@ -72,28 +72,6 @@ void SampleSums::merge(const SampleSums& other) {
   area += other.area;
 }
 
-bool SampleSums::add(const WeightedSample& sample, double distance, double slack,
-                     double outlier_cutoff) {
-  const double precision = 1.0 / (sample.variance + slack * slack);
-  const double square = distance * distance;
-  const double root = 1.0 - square * precision / (outlier_cutoff * outlier_cutoff);
-  if (!(root > 0.0)) return false;
-  const double robust = root * root;
-  const Eigen::Vector3d x = sample.point - origin;
-  const Eigen::Vector3d wx = robust * precision * x;
-  weight += robust * precision;
-  first += wx;
-  second.col(0) += wx * x[0];
-  second.col(1).tail<2>() += wx.tail<2>() * x[1];
-  second(2, 2) += wx[2] * x[2];
-  robust_weight += robust;
-  square_sum += robust * square;
-  variance_sum += robust * sample.variance;
-  area += sample.area;
-  ++support;
-  return true;
-}
-
 double SampleSums::excess(double outlier_cutoff) const {
   if (!(robust_weight > 0.0)) return 0.0;
   // E[ω r²] / E[ω] of a standard normal r under ω = (1 − r²/c²)².
@@ -146,11 +124,12 @@ struct Match {
 Match matchOf(const WeightedSample& sample, const Candidates::Entry* begin,
               const Candidates::Entry* end, const std::vector<PlaneFit>& fits,
               double least_cosine) {
-  const double explained = kExplainedSigmas * std::sqrt(sample.variance);
+  constexpr double kExplained = kExplainedSigmas * kExplainedSigmas;
   Match best;
   std::uint32_t group = 0;
   for (const Candidates::Entry* entry = begin; entry != end; ++entry) {
-    if (entry->group != group && best.distance < explained) break;
+    if (entry->group != group && best.distance * best.distance < kExplained * sample.variance)
+      break;
     group = entry->group;
     const Plane& plane = fits[entry->plane].plane;
     const double distance = std::abs(plane.signedDistance(sample.point));
@@ -164,7 +143,7 @@ Match matchOf(const WeightedSample& sample, const Candidates::Entry* begin,
 }  // namespace
 
 void assignSamples(const std::vector<WeightedSample>& samples, const Candidates& candidates,
-                   const RefinementParams& params, std::size_t stride, std::vector<PlaneFit>& fits,
+                   const RefinementParams& params, std::vector<PlaneFit>& fits,
                    std::vector<int>& labels) {
   const std::vector<std::uint8_t> frozen = frozenPlanes(candidates, fits);
   for (std::size_t k = 0; k < fits.size(); ++k) {
@@ -175,7 +154,22 @@ void assignSamples(const std::vector<WeightedSample>& samples, const Candidates&
     fit.sums = cleared;
   }
   const double least_cosine = std::cos(params.normal_gate);
-  for (std::size_t i = 0; i < samples.size(); i += stride) {
+  const double weight_slope = 1.0 / (params.outlier_cutoff * params.outlier_cutoff);
+  for (std::size_t k = 0; k < fits.size(); ++k) {
+    if (frozen[k] != 0) continue;
+    SampleSums sums = fits[k].sums;  // a copy, so that the compiler keeps it in registers
+    const double squared_slack = fits[k].slack * fits[k].slack;
+    const Plane plane = fits[k].plane;
+    for (const std::uint32_t i : candidates.uncontested[k]) {
+      const WeightedSample& sample = samples[i];
+      const bool parallel = std::abs(plane.normal().dot(sample.normal)) >= least_cosine;
+      const double distance = plane.signedDistance(sample.point);
+      const bool added = parallel && sums.add(sample, distance, squared_slack, weight_slope);
+      labels[i] = added ? static_cast<int>(k) : -1;
+    }
+    fits[k].sums = sums;
+  }
+  for (const std::uint32_t i : candidates.others) {
     const Candidates::Entry* begin = candidates.entries.data() + candidates.begin[i];
     const Candidates::Entry* end = candidates.entries.data() + candidates.begin[i + 1];
     Match match;
@@ -187,9 +181,10 @@ void assignSamples(const std::vector<WeightedSample>& samples, const Candidates&
     } else {
       match = matchOf(samples[i], begin, end, fits, least_cosine);
     }
-    const bool matched = std::isfinite(match.distance) &&
-                         fits[match.plane].sums.add(samples[i], match.distance,
-                                                    fits[match.plane].slack, params.outlier_cutoff);
+    PlaneFit& fit = fits[match.plane];
+    const bool matched =
+        std::isfinite(match.distance) &&
+        fit.sums.add(samples[i], match.distance, fit.slack * fit.slack, weight_slope);
     labels[i] = matched ? static_cast<int>(match.plane) : -1;
   }
   for (std::size_t k = 0; k < fits.size(); ++k) {

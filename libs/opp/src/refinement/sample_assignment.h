@@ -42,8 +42,29 @@ struct SampleSums {
 
   PointMoments moments() const;
   void merge(const SampleSums& other);
-  /// Adds a sample at `distance` from the plane [m]; false if it is an outlier.
-  bool add(const WeightedSample& sample, double distance, double slack, double outlier_cutoff);
+  /// Adds a sample at `distance` from the plane [m]; false if it is an outlier. `weight_slope`:
+  /// 1/c² of Tukey's weight (1 − r²/c²)².
+  bool add(const WeightedSample& sample, double distance, double squared_slack,
+           double weight_slope) {
+    const double precision = 1.0 / (sample.variance + squared_slack);
+    const double square = distance * distance;
+    const double root = 1.0 - square * precision * weight_slope;
+    if (!(root > 0.0)) return false;
+    const double robust = root * root;
+    const Eigen::Vector3d x = sample.point - origin;
+    const Eigen::Vector3d wx = robust * precision * x;
+    weight += robust * precision;
+    first += wx;
+    second.col(0) += wx * x[0];
+    second.col(1).tail<2>() += wx.tail<2>() * x[1];
+    second(2, 2) += wx[2] * x[2];
+    robust_weight += robust;
+    square_sum += robust * square;
+    variance_sum += robust * sample.variance;
+    area += sample.area;
+    ++support;
+    return true;
+  }
   /// Mean variance that the sensor's noise explains [m²].
   double meanVariance() const { return robust_weight > 0.0 ? variance_sum / robust_weight : 0.0; }
   double meanSquare() const { return robust_weight > 0.0 ? square_sum / robust_weight : 0.0; }
@@ -71,13 +92,13 @@ struct PlaneFit {
 
 struct Candidates;
 
-/// Gives every `stride`-th sample to a plane whose normal agrees, if it is no outlier there, and
-/// sums it up in that plane's fit (IV-b (1), (2)): to the nearest of the first group (the one with
-/// most support) that explains it, so that no small plane grows askew into a large one; else to the
-/// nearest of all. Labels of the other samples stay. A plane that rests, as all its rivals do,
-/// keeps its samples and sums.
+/// Gives every sample that `candidates` names to a plane whose normal agrees, if it is no outlier
+/// there, and sums it up in that plane's fit (IV-b (1), (2)): to the nearest of the first group
+/// (the one with most support) that explains it, so that no small plane grows askew into a large
+/// one; else to the nearest of all. Labels of the other samples stay. A plane that rests, as all
+/// its rivals do, keeps its samples and sums.
 void assignSamples(const std::vector<WeightedSample>& samples, const Candidates& candidates,
-                   const RefinementParams& params, std::size_t stride, std::vector<PlaneFit>& fits,
+                   const RefinementParams& params, std::vector<PlaneFit>& fits,
                    std::vector<int>& labels);
 
 }  // namespace opp

@@ -118,7 +118,7 @@ class Layers {
       SampleSums& layer = layers_[upper_[i] ? 1 : 0];
       if (layer.support == 0) layer.origin = members_[i]->point;
       // Every member is an inlier: weight 1.
-      layer.add(*members_[i], 0.0, 0.0, 1.0);
+      layer.add(*members_[i], 0.0, 0.0, 0.0);
     }
     moments_ = {layers_[0].moments(), layers_[1].moments()};
     normal_ = ownNormal(moments_[0].scatter() + moments_[1].scatter(), normal_);
