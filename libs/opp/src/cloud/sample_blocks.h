@@ -23,28 +23,30 @@ class SampleBlocks {
   /// Indices of the samples, block by block.
   const std::vector<std::uint32_t>& order() const { return order_; }
 
-  /// visit(begin, end), a stretch of `order()`, for each block that reaches into `box` and within
-  /// `distance` [m] of the plane. Stretches ascend.
+  /// visit(begin, end), stretches of `order()` that hold the blocks that reach into `box` and
+  /// within `distance` [m] of the plane. Stretches ascend; blocks that follow each other are one.
   template <typename Visit>
   void visitNear(const Plane& plane, const Eigen::AlignedBox3f& box, double distance,
                  const Visit& visit) const {
-    const Eigen::Vector3f normal = plane.normal().cast<float>();
-    const auto d = static_cast<float>(plane.d()), limit = static_cast<float>(distance);
-    for (const Block& block : blocks_) {
-      if (!block.box.intersects(box)) continue;
-      const float half = 0.5F * normal.cwiseAbs().dot(block.box.sizes());
-      if (!(std::abs(normal.dot(block.box.center()) + d) <= half + limit)) continue;
-      visit(block.begin, block.end);
+    const std::vector<std::int32_t> near = blocksNear(plane, box, distance);
+    std::size_t block = 0;
+    while (block < near.size()) {
+      const std::size_t first = block;
+      while (block < near.size() && near[block] != 0) ++block;
+      if (block > first) visit(begins_[first], begins_[block]);
+      while (block < near.size() && near[block] == 0) ++block;
     }
   }
 
  private:
-  struct Block {
-    std::size_t begin = 0, end = 0;
-    Eigen::AlignedBox3f box;
-  };
+  /// 1 for each block that reaches into `box` and within `distance` of the plane, else 0.
+  std::vector<std::int32_t> blocksNear(const Plane& plane, const Eigen::AlignedBox3f& box,
+                                       double distance) const;
+
   std::vector<std::uint32_t> order_;
-  std::vector<Block> blocks_;  ///< none is empty
+  // Blocks that are not empty, one array per number, so that the loop over them vectorizes.
+  std::vector<std::size_t> begins_;  ///< and the end of the last
+  Eigen::ArrayX3f lows_, highs_;     ///< corners of their boxes
 };
 
 }  // namespace opp

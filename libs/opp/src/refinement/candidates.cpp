@@ -34,53 +34,91 @@ void findRivals(std::size_t planes, Candidates& candidates) {
   }
 }
 
+/// Lists the samples that need no choice between planes apart from the others.
+void sortByContest(std::size_t samples, std::size_t stride, std::size_t planes,
+                   Candidates& candidates) {
+  candidates.uncontested.resize(planes);
+  for (std::size_t i = 0; i < samples; i += stride) {
+    const std::uint32_t first = candidates.begin[i];
+    const bool single = candidates.begin[i + 1] == first + 1;
+    (single ? candidates.uncontested[candidates.entries[first].plane] : candidates.others)
+        .push_back(static_cast<std::uint32_t>(i));
+  }
+}
+
 }  // namespace
 
-Candidates findCandidates(const SampleBlocks& blocks, const std::vector<WeightedSample>& samples,
-                          const std::vector<ParallelGroup>& groups,
-                          const std::vector<PlaneFit>& fits, const RefinementParams& params,
-                          std::size_t stride) {
-  double largest_variance = 0.0;
-  for (const WeightedSample& sample : samples) {
-    largest_variance = std::max(largest_variance, sample.variance);
+CandidateSearch::CandidateSearch(const SampleBlocks& blocks,
+                                 const std::vector<WeightedSample>& samples)
+    : blocks_(blocks) {
+  const auto count = static_cast<Eigen::Index>(samples.size());
+  points_.resize(count, 3);
+  normals_.resize(count, 3);
+  variances_.resize(count);
+  for (Eigen::Index i = 0; i < count; ++i) {
+    const WeightedSample& sample = samples[static_cast<std::size_t>(i)];
+    points_.row(i) = sample.point.cast<float>().transpose();
+    normals_.row(i) = sample.normal.cast<float>().transpose();
+    variances_[i] = static_cast<float>(sample.variance);
+    largest_variance_ = std::max(largest_variance_, sample.variance);
   }
-  const double least_cosine = std::cos(params.normal_gate + kTurned);
+}
+
+template <typename Visit>
+void CandidateSearch::markNear(const PlaneFit& fit, const RefinementParams& params,
+                               std::vector<std::int32_t>& near, const Visit& visit) const {
+  const float *x = points_.col(0).data(), *y = points_.col(1).data(), *z = points_.col(2).data();
+  const float *nx = normals_.col(0).data(), *ny = normals_.col(1).data(),
+              *nz = normals_.col(2).data();
+  const float* variances = variances_.data();
+  std::int32_t* marks = near.data();
+  const Eigen::Vector4f coefficients = fit.plane.coefficients().cast<float>();
+  const float a = coefficients[0], b = coefficients[1], c = coefficients[2], d = coefficients[3];
+  const Eigen::AlignedBox3f box = fit.reach.cast<float>();
+  const Eigen::Vector3f low = box.min(), high = box.max();
   const double reach = kFarther * params.outlier_cutoff;
+  const auto squared_reach = static_cast<float>(reach * reach);
+  const auto squared_slack = static_cast<float>(fit.slack * fit.slack);
+  const auto least_cosine = static_cast<float>(std::cos(params.normal_gate + kTurned));
+  const double farthest = reach * std::sqrt(largest_variance_ + fit.slack * fit.slack);
+  blocks_.visitNear(fit.plane, box, farthest, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const float distance = a * x[i] + b * y[i] + c * z[i] + d;
+      const float cosine = std::abs(a * nx[i] + b * ny[i] + c * nz[i]);
+      const bool inside = (x[i] >= low.x()) & (x[i] <= high.x()) & (y[i] >= low.y()) &
+                          (y[i] <= high.y()) & (z[i] >= low.z()) & (z[i] <= high.z());
+      marks[i] = inside & (cosine >= least_cosine) &
+                 (distance * distance <= squared_reach * (variances[i] + squared_slack));
+    }
+    visit(begin, end);
+  });
+}
+
+Candidates CandidateSearch::find(const std::vector<ParallelGroup>& groups,
+                                 const std::vector<PlaneFit>& fits, const RefinementParams& params,
+                                 std::size_t stride) const {
+  const auto samples = static_cast<std::size_t>(variances_.size());
   std::vector<std::pair<std::uint32_t, Candidates::Entry>> found;  // sample and entry
+  std::vector<std::int32_t> near(samples);
   Candidates candidates;
-  candidates.begin.assign(samples.size() + 1, 0);
+  candidates.begin.assign(samples + 1, 0);
   for (std::uint32_t group = 0; group < groups.size(); ++group) {
     for (const std::size_t plane : groups[group]) {
-      const PlaneFit& fit = fits[plane];
-      const Eigen::Vector3d& normal = fit.plane.normal();
-      const double squared_slack = fit.slack * fit.slack;
-      const auto consider = [&](std::size_t begin, std::size_t end) {
+      const Candidates::Entry entry{group, static_cast<std::uint32_t>(plane)};
+      markNear(fits[plane], params, near, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = (begin + stride - 1) / stride * stride; i < end; i += stride) {
-          const WeightedSample& sample = samples[i];
-          const double distance = fit.plane.signedDistance(sample.point);
-          if (distance * distance > reach * reach * (sample.variance + squared_slack)) continue;
-          if (!(std::abs(normal.dot(sample.normal)) >= least_cosine)) continue;
-          if (!fit.reach.contains(sample.point)) continue;
-          found.push_back(
-              {static_cast<std::uint32_t>(i), {group, static_cast<std::uint32_t>(plane)}});
+          if (near[i] == 0) continue;
+          found.push_back({static_cast<std::uint32_t>(i), entry});
           ++candidates.begin[i + 1];
         }
-      };
-      blocks.visitNear(fit.plane, fit.reach.cast<float>(),
-                       reach * std::sqrt(largest_variance + squared_slack), consider);
+      });
     }
   }
   std::partial_sum(candidates.begin.begin(), candidates.begin.end(), candidates.begin.begin());
   candidates.entries.resize(found.size());
   std::vector<std::uint32_t> next(candidates.begin.begin(), candidates.begin.end() - 1);
   for (const auto& [sample, entry] : found) candidates.entries[next[sample]++] = entry;
-  candidates.uncontested.resize(fits.size());
-  for (std::uint32_t i = 0; i < samples.size(); i += static_cast<std::uint32_t>(stride)) {
-    const std::uint32_t first = candidates.begin[i];
-    const bool single = candidates.begin[i + 1] == first + 1;
-    (single ? candidates.uncontested[candidates.entries[first].plane] : candidates.others)
-        .push_back(i);
-  }
+  sortByContest(samples, stride, fits.size(), candidates);
   findRivals(fits.size(), candidates);
   return candidates;
 }

@@ -7,6 +7,8 @@
 #include "cloud/sample_blocks.h"
 #include "refinement/sample_assignment.h"
 
+#include <Eigen/Core>
+
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -31,11 +33,29 @@ struct Candidates {
   std::vector<std::vector<std::uint32_t>> rivals;
 };
 
-/// Candidates of every `stride`-th sample, which the others have none: planes within whose reach it
-/// lies, not much farther off than outliers are. `samples` are in the order of `blocks`.
-Candidates findCandidates(const SampleBlocks& blocks, const std::vector<WeightedSample>& samples,
-                          const std::vector<ParallelGroup>& groups,
-                          const std::vector<PlaneFit>& fits, const RefinementParams& params,
-                          std::size_t stride);
+/// Searches the samples of a scan, one array per number, so that the loop over them vectorizes. In
+/// single precision: what it rounds is far below the margins.
+class CandidateSearch {
+ public:
+  /// `blocks` must outlive this; `samples` are in their order.
+  CandidateSearch(const SampleBlocks& blocks, const std::vector<WeightedSample>& samples);
+
+  /// Candidates of every `stride`-th sample, which the others have none: planes within whose reach
+  /// it lies, not much farther off than outliers are.
+  Candidates find(const std::vector<ParallelGroup>& groups, const std::vector<PlaneFit>& fits,
+                  const RefinementParams& params, std::size_t stride) const;
+
+ private:
+  /// Marks the samples near the plane (1, not near: 0) and calls visit(begin, end) for the
+  /// stretches that were looked at.
+  template <typename Visit>
+  void markNear(const PlaneFit& fit, const RefinementParams& params,
+                std::vector<std::int32_t>& near, const Visit& visit) const;
+
+  const SampleBlocks& blocks_;
+  Eigen::ArrayX3f points_, normals_;
+  Eigen::ArrayXf variances_;
+  double largest_variance_ = 0.0;
+};
 
 }  // namespace opp

@@ -49,6 +49,7 @@ class Refiner {
         params_(params),
         blocks_(cloud.points),
         samples_(inOrder(weightedSamples(cloud, sensor), blocks_.order())),
+        search_(blocks_, samples_),
         edges_(graph.edges),
         labels_(cloud.size(), -1) {
     for (const PlaneNode& node : graph.nodes) {
@@ -104,8 +105,7 @@ class Refiner {
     for (Index k = 0; k < fits_.size(); ++k) single.push_back({static_cast<int>(k)});
     const Index stride = std::max<Index>(
         1, samples_.size() / static_cast<Index>(std::max(1, params_.coarse_samples)));
-    const Candidates candidates =
-        findCandidates(blocks_, samples_, groupsOf(single), fits_, params_, stride);
+    const Candidates candidates = search_.find(groupsOf(single), fits_, params_, stride);
     for (int pass = 0; pass < kCoarsePasses; ++pass) {
       assignSamples(samples_, candidates, params_, fits_, labels_);
       bool rest = true;
@@ -121,8 +121,7 @@ class Refiner {
   void fitTogether(int max_passes) {
     solve();
     for (PlaneFit& fit : fits_) fit.rests = false;
-    const Candidates candidates =
-        findCandidates(blocks_, samples_, groupsOf(structure_.families), fits_, params_, 1);
+    const Candidates candidates = search_.find(groupsOf(structure_.families), fits_, params_, 1);
     for (int pass = 0; pass < max_passes; ++pass) {
       assignSamples(samples_, candidates, params_, fits_, labels_);
       converged_ = solve();
@@ -210,6 +209,7 @@ class Refiner {
   const RefinementParams& params_;
   SampleBlocks blocks_;
   std::vector<WeightedSample> samples_;  ///< in the order of the blocks, as labels_
+  CandidateSearch search_;
   std::vector<OrthogonalityEdge> edges_;
   std::vector<int> labels_;
   std::vector<PlaneFit> fits_;
