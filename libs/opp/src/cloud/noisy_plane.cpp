@@ -3,70 +3,85 @@
 #include "cloud/noisy_plane.h"
 
 #include <Eigen/Geometry>
-#include <Eigen/LU>
-
-#include <algorithm>
-#include <cmath>
-#include <utility>
 
 namespace opp {
 namespace {
 
-/// The least eigenvalue of a symmetric, positive semidefinite matrix and a unit eigenvector (not
-/// finite if the eigenvalue is multiple). Eigen's closed form takes twice the time, which is the
-/// largest share of the whole stage.
-std::pair<double, Eigen::Vector3d> leastEigenpair(const Eigen::Matrix3d& a) {
-  const double xy = a(0, 1), xz = a(0, 2), yz = a(1, 2);
-  const double trace = a.trace();
-  const double minors =
-      a(0, 0) * a(1, 1) - xy * xy + a(0, 0) * a(2, 2) - xz * xz + a(1, 1) * a(2, 2) - yz * yz;
-  const double determinant = a.determinant();
+/// A − factor·I.
+SymmetricLanes lessened(const SymmetricLanes& a, const Lanes& factor) {
+  return {a.xx - factor, a.xy, a.xz, a.yy - factor, a.yz, a.zz - factor};
+}
+
+/// The least eigenvalue of symmetric, positive semidefinite matrices.
+Lanes leastEigenvalue(const SymmetricLanes& a) {
+  const Lanes trace = a.trace(), minors = a.minors(), determinant = a.determinant();
   // Newton's steps on det(A − λI) from λ = 0 rise to its least root and never pass it.
   // They converge quadratically: after a rise of 10⁻⁸ of the trace the rest is rounding.
   constexpr int kMaxSteps = 30;  // 3 are usual
   constexpr double kLastRise = 1e-8;
-  double least = 0.0;
+  Lanes least = Lanes::Zero();
   for (int step = 0; step < kMaxSteps; ++step) {
-    const double value = determinant - least * (minors - least * (trace - least));
-    const double slope = minors - least * (2.0 * trace - 3.0 * least);
-    const double rise = slope > 0.0 ? value / slope : 0.0;
+    const Lanes value = determinant - least * (minors - least * (trace - least));
+    const Lanes slope = minors - least * (2.0 * trace - 3.0 * least);
+    const Lanes rise = whereGreater(slope, Lanes::Zero(), value / slope, Lanes::Zero());
     least += rise;
-    if (!(rise > kLastRise * trace)) break;
+    if (!((rise - kLastRise * trace).maxCoeff() > 0.0)) break;
   }
-  // The eigenvector is orthogonal to the rows of A − λI.
-  const Eigen::Matrix3d rows = a - least * Eigen::Matrix3d::Identity();
-  Eigen::Vector3d best = rows.row(0).cross(rows.row(1));
-  for (int k = 1; k < 3; ++k) {
-    const Eigen::Vector3d other = rows.row(k).cross(rows.row((k + 1) % 3));
-    if (other.squaredNorm() > best.squaredNorm()) best = other;
+  return least;
+}
+
+/// Unit eigenvectors of an eigenvalue; not finite if it is multiple.
+VectorLanes eigenvector(const SymmetricLanes& a, const Lanes& eigenvalue) {
+  // It is orthogonal to the rows of A − λI.
+  const SymmetricLanes rows = lessened(a, eigenvalue);
+  const VectorLanes x{rows.xx, rows.xy, rows.xz}, y{rows.xy, rows.yy, rows.yz},
+      z{rows.xz, rows.yz, rows.zz};
+  VectorLanes best = cross(x, y);
+  for (const VectorLanes& other : {cross(y, z), cross(z, x)}) {
+    const Lanes size = best.squaredNorm(), other_size = other.squaredNorm();
+    best = {whereGreater(other_size, size, other.x, best.x),
+            whereGreater(other_size, size, other.y, best.y),
+            whereGreater(other_size, size, other.z, best.z)};
   }
-  return {least, best / best.norm()};
+  return normalized(best);
+}
+
+/// W C W with W = I − shrink ray rayᵀ.
+SymmetricLanes whitened(const SymmetricLanes& c, const VectorLanes& ray, const Lanes& shrink) {
+  const VectorLanes along = c * ray;
+  const Lanes half = 0.5 * shrink * shrink * dot(ray, along);
+  const VectorLanes h{shrink * along.x - half * ray.x, shrink * along.y - half * ray.y,
+                      shrink * along.z - half * ray.z};
+  return {c.xx - 2.0 * h.x * ray.x,           c.xy - (h.x * ray.y + h.y * ray.x),
+          c.xz - (h.x * ray.z + h.z * ray.x), c.yy - 2.0 * h.y * ray.y,
+          c.yz - (h.y * ray.z + h.z * ray.y), c.zz - 2.0 * h.z * ray.z};
 }
 
 }  // namespace
 
-NoisyPlane fitNoisyPlane(const Eigen::Matrix3d& covariance, const Eigen::Vector3d& ray,
-                         double along, double across) {
-  const double squeeze = across / along, shrink = 1.0 - squeeze;
-  // W C W with W = I − shrink ray rayᵀ, without products of matrices.
-  const Eigen::Vector3d along_ray = covariance * ray;
-  const Eigen::Vector3d half =
-      shrink * along_ray - (0.5 * shrink * shrink * ray.dot(along_ray)) * ray;
-  const Eigen::Matrix3d cross = half * ray.transpose();
-  const auto [least, whitened_normal] = leastEigenpair(covariance - cross - cross.transpose());
-  const Eigen::Vector3d normal =
-      (whitened_normal - (shrink * ray.dot(whitened_normal)) * ray).normalized();
+NoisyPlane NoisyPlanes::operator[](int lane) const {
+  return {normal[lane], width[lane], surface[lane]};
+}
+
+NoisyPlanes fitNoisyPlanes(const SymmetricLanes& covariance, const VectorLanes& ray,
+                           const Lanes& along, double across) {
+  const Lanes squeeze = across / along, shrink = 1.0 - squeeze;
+  const SymmetricLanes white = whitened(covariance, ray, shrink);
+  const Lanes least = leastEigenvalue(white);
+  const VectorLanes n = eigenvector(white, least);
+  const Lanes back = shrink * dot(ray, n);
+  NoisyPlanes planes;
+  planes.normal = normalized({n.x - back * ray.x, n.y - back * ray.y, n.z - back * ray.z});
   // C − λΣ has the normal in its kernel; its other eigenvalues are the widths of the surface.
-  const double stretch = 1.0 / (squeeze * squeeze) - 1.0;
-  const Eigen::Matrix3d surface =
-      covariance - least * (Eigen::Matrix3d::Identity() + stretch * ray * ray.transpose());
-  const double sum = surface.trace();
-  const double product = surface(0, 0) * surface(1, 1) - surface(0, 1) * surface(0, 1) +
-                         surface(0, 0) * surface(2, 2) - surface(0, 2) * surface(0, 2) +
-                         surface(1, 1) * surface(2, 2) - surface(1, 2) * surface(1, 2);
-  const double larger = 0.5 * (sum + std::sqrt(std::max(0.0, sum * sum - 4.0 * product)));
-  const double smaller = larger > 0.0 ? product / larger : 0.0;
-  return {normal, smaller, surface};
+  const Lanes stretch = least * (1.0 / (squeeze * squeeze) - 1.0);
+  const SymmetricLanes c = lessened(covariance, least);
+  planes.surface = {c.xx - stretch * ray.x * ray.x, c.xy - stretch * ray.x * ray.y,
+                    c.xz - stretch * ray.x * ray.z, c.yy - stretch * ray.y * ray.y,
+                    c.yz - stretch * ray.y * ray.z, c.zz - stretch * ray.z * ray.z};
+  const Lanes sum = planes.surface.trace(), product = planes.surface.minors();
+  const Lanes larger = 0.5 * (sum + (sum * sum - 4.0 * product).max(0.0).sqrt());
+  planes.width = whereGreater(larger, Lanes::Zero(), product / larger, Lanes::Zero());
+  return planes;
 }
 
 Eigen::Vector3d narrowDirection(const NoisyPlane& plane) {

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "cloud/lanes.h"
+
 #include <Eigen/Core>
 
 namespace opp {
@@ -13,13 +15,21 @@ struct NoisyPlane {
   Eigen::Matrix3d surface;  ///< covariance of the points without the noise [m²]
 };
 
-/// Unit normal and smaller tangential variance of points with covariance `covariance`, whose noise
-/// is `along` in the direction of the unit vector `ray` and `across` in the others. The normal n
+/// One of each problem.
+struct NoisyPlanes {
+  VectorLanes normal;
+  Lanes width;
+  SymmetricLanes surface;
+  NoisyPlane operator[](int lane) const;
+};
+
+/// Unit normals and smaller tangential variances of points with these covariances, whose noise is
+/// `along` in the direction of the unit vector `ray` and `across` in the others. The normal n
 /// minimizes nᵀCn / nᵀΣn, Σ the noise's covariance. Plain least squares (Σ = I) would turn slanted
 /// surfaces toward the sensor by several degrees, because noise along the ray spreads the points
 /// in the plane as well.
-NoisyPlane fitNoisyPlane(const Eigen::Matrix3d& covariance, const Eigen::Vector3d& ray,
-                         double along, double across);
+NoisyPlanes fitNoisyPlanes(const SymmetricLanes& covariance, const VectorLanes& ray,
+                           const Lanes& along, double across);
 
 /// Unit tangent along which the points extend less.
 Eigen::Vector3d narrowDirection(const NoisyPlane& plane);
