@@ -40,8 +40,9 @@ void sortByContest(std::size_t samples, std::size_t stride, std::size_t planes,
   candidates.uncontested.resize(planes);
   for (std::size_t i = 0; i < samples; i += stride) {
     const std::uint32_t first = candidates.begin[i];
-    const bool single = candidates.begin[i + 1] == first + 1;
-    (single ? candidates.uncontested[candidates.entries[first].plane] : candidates.others)
+    const std::uint32_t count = candidates.begin[i + 1] - first;
+    if (count == 0) continue;
+    (count == 1 ? candidates.uncontested[candidates.entries[first].plane] : candidates.contested)
         .push_back(static_cast<std::uint32_t>(i));
   }
 }

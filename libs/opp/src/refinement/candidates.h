@@ -28,7 +28,7 @@ struct Candidates {
   std::vector<Entry> entries;        ///< of a sample: those of the first group first
   /// Per plane: the samples that can belong to no other plane, ascending.
   std::vector<std::vector<std::uint32_t>> uncontested;
-  std::vector<std::uint32_t> others;  ///< samples with no candidate, or several; ascending
+  std::vector<std::uint32_t> contested;  ///< samples with several candidates, ascending
   /// Per plane: the planes that share a candidate sample with it, itself included.
   std::vector<std::vector<std::uint32_t>> rivals;
 };

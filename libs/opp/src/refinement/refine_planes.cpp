@@ -121,6 +121,7 @@ class Refiner {
   void fitTogether(int max_passes) {
     solve();
     for (PlaneFit& fit : fits_) fit.rests = false;
+    std::fill(labels_.begin(), labels_.end(), -1);
     const Candidates candidates = search_.find(groupsOf(structure_.families), fits_, params_, 1);
     for (int pass = 0; pass < max_passes; ++pass) {
       assignSamples(samples_, candidates, params_, fits_, labels_);

@@ -169,7 +169,7 @@ void assignSamples(const std::vector<WeightedSample>& samples, const Candidates&
     }
     fits[k].sums = sums;
   }
-  for (const std::uint32_t i : candidates.others) {
+  for (const std::uint32_t i : candidates.contested) {
     const Candidates::Entry* begin = candidates.entries.data() + candidates.begin[i];
     const Candidates::Entry* end = candidates.entries.data() + candidates.begin[i + 1];
     Match match;

@@ -5,6 +5,7 @@
 #include "opp/geometry/plane.h"
 
 #include "refinement/normal_components.h"
+#include "refinement/solve_alone.h"
 
 #include <Eigen/Cholesky>
 #include <Eigen/Geometry>
@@ -16,15 +17,6 @@ namespace opp {
 namespace {
 
 using Normals = std::vector<Eigen::Vector3d>;
-
-/// Weakest information that the normal equations are given: an unobserved direction then has a
-/// variance of 1 rad², which is as good as unknown for a direction [1/rad²].
-constexpr double kPriorInformation = 1.0;
-/// A step of this size changes no digit that float32 points could give [rad].
-constexpr double kStepTolerance = 1e-12;
-/// Error of E from rounding, relative to the sum of its terms' sizes, with a margin.
-constexpr double kEnergyRounding = 1e-14;
-constexpr int kMaxSteps = 50;
 
 /// Where each normal's parameters begin, and how many there are in all.
 struct Layout {
@@ -175,26 +167,17 @@ NormalSolution solveJointly(const NormalProblem& problem, const Normals& initial
   solution.normals = initial;
   solution.converged = initial.empty();
   for (const auto& frame : problem.frames) orthonormalize(frame, solution.normals);
-  double damping = 0.0;
   double rounding = 0.0;
   for (const auto& scatter : problem.scatters) rounding += kEnergyRounding * scatter.trace();
-  double current = energy(problem, solution.normals);
+  StepDamping damping(energy(problem, solution.normals), rounding);
   for (int step_count = 0; step_count < kMaxSteps && !solution.converged; ++step_count) {
     NormalSystem system = linearize(problem, solution.normals);
-    system.information.diagonal() *= 1.0 + damping;
+    system.information.diagonal() *= 1.0 + damping.value();
     system.information.diagonal().array() += kPriorInformation;
     const Eigen::VectorXd step = -system.information.llt().solve(system.gradient);
     solution.converged = step.lpNorm<Eigen::Infinity>() < kStepTolerance;
     const Normals candidate = retract(problem, solution.normals, step);
-    const double next = energy(problem, candidate);
-    // Near the minimum E is flat to its last digits, while the step still gains some.
-    if (next <= current + rounding) {
-      solution.normals = candidate;
-      current = next;
-      damping *= 0.1;
-    } else {
-      damping = 10.0 * damping + 1e-4;
-    }
+    if (damping.accepts(energy(problem, candidate))) solution.normals = candidate;
   }
   for (const auto& frame : problem.frames) orthonormalize(frame, solution.normals);
   return solution;
@@ -221,6 +204,12 @@ NormalSolution solveNormals(const NormalProblem& problem, const Normals& initial
   check(problem, initial.size());
   NormalSolution solution{initial, true};
   for (const NormalComponent& component : normalComponents(problem)) {
+    if (component.normals.size() == 1) {
+      Eigen::Vector3d& normal = solution.normals[component.normals.front()];
+      solution.converged =
+          solveAlone(component.problem.scatters.front(), normal) && solution.converged;
+      continue;
+    }
     const NormalSolution part = solveJointly(component.problem, partOf(initial, component));
     solution.converged = solution.converged && part.converged;
     for (std::size_t k = 0; k < component.normals.size(); ++k) {
