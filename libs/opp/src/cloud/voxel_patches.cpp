@@ -7,6 +7,7 @@
 #include <nanoflann.hpp>
 
 #include <algorithm>
+#include <cstdint>
 
 namespace opp {
 namespace {
@@ -27,53 +28,68 @@ struct MeansAdaptor {
 class NearestWindows final : public PatchWindows {
  public:
   explicit NearestWindows(const Patches& patches)
-      : patches_(patches), adaptor_{patches.means}, tree_(3, adaptor_) {
+      : patches_(patches),
+        adaptor_{patches.means},
+        tree_(3, adaptor_, nanoflann::KDTreeSingleIndexAdaptorParams(kLeafSize)),
+        nearest_(patches.size()) {
     tree_.buildIndex();
   }
 
   WindowSums sums(int patch, int radius) override {
     WindowSums window;
-    for (const int i : nearest(patch, radius)) {
-      const auto k = static_cast<std::size_t>(i);
-      window.add(patches_.sums[k], patches_.means[k]);
+    const Nearest nearest = nearestTo(patch, radius);
+    for (const std::uint32_t* i = nearest.begin; i != nearest.end; ++i) {
+      window.add(patches_.sums[*i], patches_.means[*i]);
     }
     return window;
   }
 
   void members(int patch, int radius, std::vector<int>& members) override {
-    members = nearest(patch, radius);
+    const Nearest nearest = nearestTo(patch, radius);
+    members.assign(nearest.begin, nearest.end);
   }
 
   void shifted(int patch, int radius, std::vector<int>& centers) override {
-    centers = nearest(patch, radius);
+    members(patch, radius, centers);
   }
 
  private:
+  /// Of the tree: fewer make it deep, more are searched in vain.
+  static constexpr std::size_t kLeafSize = 20;
+  /// Most patches of a spinning lidar need more than the smallest window.
+  static constexpr int kLeastRadius = 2;
+
   using Tree =
       nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<double, MeansAdaptor>,
                                           MeansAdaptor, 3>;
-  /// The last window is kept: its sums and members are asked for in turn.
-  const std::vector<int>& nearest(int patch, int radius) {
-    if (patch == patch_ && radius == radius_) return window_;
-    const auto side = static_cast<std::size_t>(2 * radius + 1);
-    indices_.resize(std::min(patches_.size(), side * side));
-    distances_.resize(indices_.size());
-    const std::size_t found =
-        tree_.knnSearch(patches_.means[static_cast<std::size_t>(patch)].data(), indices_.size(),
-                        indices_.data(), distances_.data());
-    window_.assign(indices_.begin(), indices_.begin() + static_cast<std::ptrdiff_t>(found));
-    patch_ = patch;
-    radius_ = radius;
-    return window_;
+  struct Nearest {
+    const std::uint32_t *begin, *end;
+  };
+
+  /// As many patches as a square window of that radius has, the nearest first.
+  Nearest nearestTo(int patch, int radius) {
+    const auto countFor = [this](int window_radius) {
+      const auto side = static_cast<std::size_t>(2 * window_radius + 1);
+      return std::min(patches_.size(), side * side);
+    };
+    const std::size_t count = countFor(radius);
+    const auto k = static_cast<std::size_t>(patch);
+    std::vector<std::uint32_t>& nearest = nearest_[k];
+    if (nearest.size() < count) {
+      nearest.resize(countFor(std::max(radius, kLeastRadius)));
+      distances_.resize(nearest.size());
+      tree_.knnSearch(patches_.means[k].data(), nearest.size(), nearest.data(), distances_.data());
+    }
+    return {nearest.data(), nearest.data() + count};
   }
 
   const Patches& patches_;
   MeansAdaptor adaptor_;
   Tree tree_;
-  int patch_ = -1, radius_ = -1;
-  std::vector<int> window_;
-  std::vector<unsigned int> indices_;
-  std::vector<double> distances_;
+  /// Of each patch, those of its widest window so far: sums, members and smaller windows are asked
+  /// for in turn.
+  std::vector<std::vector<std::uint32_t>> nearest_;
+  std::vector<double> distances_;  ///< scratch
 };
 
 }  // namespace
