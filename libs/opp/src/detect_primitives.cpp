@@ -11,13 +11,11 @@
 #include "primitives/stopwatch.h"
 
 namespace opp {
+namespace {
 
-Primitives detectPrimitives(ScanSurface& surface, const PrimitiveParams& params, int threads,
-                            StageTimings* timings) {
-  StageTimings laps = timings == nullptr ? StageTimings() : *timings;
-  Stopwatch stopwatch;
-  const OppHypotheses hypotheses = detectOpps(surface, params.sensor, params.voting, threads);
-  const OrientedCloud& cloud = surface.samples;
+/// All stages after voting. `stopwatch` ran since the beginning of that; fills `laps`.
+Primitives primitivesOf(const OrientedCloud& cloud, const OppHypotheses& hypotheses,
+                        const PrimitiveParams& params, Stopwatch stopwatch, StageTimings& laps) {
   laps.voting = stopwatch.lap();
   const PlaneGraph graph = buildPlaneGraph(cloud, hypotheses, params.sensor, params.graph);
   laps.clustering = stopwatch.lap();
@@ -27,14 +25,28 @@ Primitives detectPrimitives(ScanSurface& surface, const PrimitiveParams& params,
   laps.corners = stopwatch.lap();
   primitives.lines = findLines(cloud, primitives, params.lines);
   laps.lines = stopwatch.lap();
-  if (timings != nullptr) *timings = laps;
   return primitives;
+}
+
+}  // namespace
+
+Primitives detectPrimitives(ScanSurface& surface, const PrimitiveParams& params, int threads,
+                            StageTimings* timings) {
+  StageTimings unwanted;
+  const Stopwatch stopwatch;
+  // Voting splits samples: the surface holds others afterwards.
+  const OppHypotheses hypotheses = detectOpps(surface, params.sensor, params.voting, threads);
+  return primitivesOf(surface.samples, hypotheses, params, stopwatch,
+                      timings == nullptr ? unwanted : *timings);
 }
 
 Primitives detectPrimitives(const OrientedCloud& cloud, const PrimitiveParams& params, int threads,
                             StageTimings* timings) {
-  ScanSurface surface{cloud, {}, {}};
-  return detectPrimitives(surface, params, threads, timings);
+  StageTimings unwanted;
+  const Stopwatch stopwatch;
+  const OppHypotheses hypotheses = detectOpps(cloud, params.sensor, params.voting, threads);
+  return primitivesOf(cloud, hypotheses, params, stopwatch,
+                      timings == nullptr ? unwanted : *timings);
 }
 
 }  // namespace opp

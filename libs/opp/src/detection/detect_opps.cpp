@@ -185,30 +185,34 @@ void voteNarrow(const std::vector<Level>& levels, const Eigen::Vector3f& viewpoi
 
 OppHypotheses detectOpps(ScanSurface& surface, const SensorModel& sensor,
                          const VotingParams& params, int threads) {
+  if (surface.patches.size() == 0) return detectOpps(surface.samples, sensor, params, threads);
   validate(params);
   const double spacing = surface.samples.spacing;
   if (surface.samples.size() < 3 || !(spacing > 0.0)) return {};
   OppHypotheses found;
   const VoteThresholds thresholds(params);
-  const bool detail = surface.patches.size() > 0;
-  std::vector<std::uint8_t> open = voteWide(surface.samples, detail ? params.detail_samples : 0,
-                                            sensor, params, thresholds, threads, found);
-  std::size_t begin = 0;
-  if (detail) {
-    // Detail votes with detail only: the rest of the scene is explained.
-    begin = splitSamples(surface, open);
-    open.assign(surface.samples.size() - begin, 1);
-  }
+  const auto open =
+      voteWide(surface.samples, params.detail_samples, sensor, params, thresholds, threads, found);
+  // Detail votes with detail only: the rest of the scene is explained.
+  const std::size_t begin = splitSamples(surface, open);
   const auto samples = votingSamples(surface.samples, begin, sensor, params);
-  voteNarrow(levelsOf(samples, open, spacing), surface.samples.viewpoint, detail, params,
-             thresholds, threads, found);
+  const std::vector<std::uint8_t> all(samples.size(), 1);
+  voteNarrow(levelsOf(samples, all, spacing), surface.samples.viewpoint, true, params, thresholds,
+             threads, found);
   return found;
 }
 
 OppHypotheses detectOpps(const OrientedCloud& cloud, const SensorModel& sensor,
                          const VotingParams& params, int threads) {
-  ScanSurface surface{cloud, {}, {}};
-  return detectOpps(surface, sensor, params, threads);
+  validate(params);
+  if (cloud.size() < 3 || !(cloud.spacing > 0.0)) return {};
+  OppHypotheses found;
+  const VoteThresholds thresholds(params);
+  const auto open = voteWide(cloud, 0, sensor, params, thresholds, threads, found);
+  const auto samples = votingSamples(cloud, 0, sensor, params);
+  voteNarrow(levelsOf(samples, open, cloud.spacing), cloud.viewpoint, false, params, thresholds,
+             threads, found);
+  return found;
 }
 
 }  // namespace opp
