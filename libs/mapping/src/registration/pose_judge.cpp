@@ -54,7 +54,7 @@ GlobalAlignment PoseJudge::judge(const std::vector<Candidate>& candidates) const
   answer.outcome = outcome(best, answer);
   if (answer.outcome != AlignmentOutcome::kAligned) return answer;
   answer.target_from_source = best.pose.target_from_source;
-  answer.covariance = best.pose.information.inverse();
+  answer.covariance = covarianceAt(target_, source_, answer.target_from_source, params_);
   return answer;
 }
 

@@ -4,11 +4,15 @@
 
 #include "opp/mapping/registration/plane_samples.h"
 
+#include "registration/shared_errors.h"
+
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdint>
 #include <map>
 #include <vector>
 
@@ -20,6 +24,8 @@ constexpr double kKernelWidth = 2.5;
 /// Steps from half a cell of tolerance, halving it each time, and then without.
 constexpr int kAnnealedSteps = 8;
 constexpr int kFinalSteps = 4;
+/// Distortion is one error for rays within this angle [rad]: see SensorModel::distortionSlope.
+constexpr double kDistortedTogether = 0.1;
 
 /// A sample of one scan on a surface of the other, in the target's axes.
 struct Match {
@@ -28,6 +34,34 @@ struct Match {
   double residual;  ///< [m]; grows when the source moves along the normal
   double weight;    ///< robust, over variance [1/m²]
   int surface;      ///< plane of the target, of the source after these; −1: none
+  std::uint32_t target_sample;
+  std::uint32_t source_sample;
+};
+
+/// Numbers the directions of a scan's rays within which distortion is one error.
+class DistortedRays {
+ public:
+  /// The error of the sample's range, as it shows along `normal` (a unit vector in the scan's
+  /// frame).
+  SharedErrors::Part at(const ScanModel& scan, std::uint32_t sample,
+                        const Eigen::Vector3d& normal) {
+    const Eigen::Vector3d ray =
+        (scan.cloud().points[sample] - scan.cloud().viewpoint).cast<double>();
+    const double range = ray.norm();
+    const std::array<int, 3> cell = {
+        &scan == first_ ? 0 : 1,
+        static_cast<int>(std::floor(std::atan2(ray.y(), ray.x()) / kDistortedTogether)),
+        static_cast<int>(
+            std::floor(std::atan2(ray.z(), ray.head<2>().norm()) / kDistortedTogether))};
+    const int number = numbers_.try_emplace(cell, static_cast<int>(numbers_.size())).first->second;
+    const double share = range > 0.0 ? normal.dot(ray) / range : 0.0;
+    return {number, scan.sensor.distortion(range) * share};
+  }
+  explicit DistortedRays(const ScanModel& first) : first_(&first) {}
+
+ private:
+  const ScanModel* first_;
+  std::map<std::array<int, 3>, int> numbers_;
 };
 
 class Refiner {
@@ -50,19 +84,44 @@ class Refiner {
     RefinedPose result;
     result.target_from_source = pose_;
     result.observability = observability();
-    // Samples of one plane share part of their error.
-    std::map<int, double> count;
-    for (const Match& m : matches_) count[m.surface] += 1.0;
-    for (const Match& m : matches_) {
-      const double all = m.surface < 0 ? 1.0 : count[m.surface];
-      const double worth = std::min(all, all / (1.0 + (all - 1.0) * target_.sample_correlation));
-      const Vector6d j = jacobian(m, Eigen::Vector3d::Zero(), 1.0);
-      result.information.noalias() += m.weight * worth / all * j * j.transpose();
+    const std::vector<double> weights = jointWeights();
+    for (std::size_t i = 0; i < matches_.size(); ++i) {
+      const Vector6d j = jacobian(matches_[i], Eigen::Vector3d::Zero(), 1.0);
+      result.information.noalias() += weights[i] * j * j.transpose();
     }
     return result;
   }
 
+  Matrix6d covariance() {
+    match(0.0);
+    DistortedRays rays(target_);
+    SharedErrors errors;
+    const std::vector<double> weights = jointWeights();
+    for (std::size_t i = 0; i < matches_.size(); ++i) {
+      const Match& m = matches_[i];
+      const Eigen::Vector3d normal_in_source = pose_.linear().transpose() * m.normal;
+      errors.add(jacobian(m, Eigen::Vector3d::Zero(), 1.0), m.weight, 1.0 / weights[i],
+                 {rays.at(target_, m.target_sample, m.normal),
+                  rays.at(source_, m.source_sample, normal_in_source)});
+    }
+    return errors.covariance();
+  }
+
  private:
+  /// What the matches are worth together: samples of one plane share part of their error.
+  std::vector<double> jointWeights() const {
+    std::map<int, double> count;
+    for (const Match& m : matches_) count[m.surface] += 1.0;
+    const double correlation = target_.sensor.noise_correlation;
+    std::vector<double> weights;
+    for (const Match& m : matches_) {
+      const double all = m.surface < 0 ? 1.0 : count[m.surface];
+      const double worth = std::min(all, all / (1.0 + (all - 1.0) * correlation));
+      weights.push_back(m.weight * worth / all);
+    }
+    return weights;
+  }
+
   /// d residual / d(ω, v), with the lever from `middle` in units of `length`.
   static Vector6d jacobian(const Match& m, const Eigen::Vector3d& middle, double length) {
     Vector6d j;
@@ -104,7 +163,7 @@ class Refiner {
       const double residual = surface.signedDistance(lever + pose_.translation());
       matches_.push_back({lever, surface.normal(), residual,
                           weight(residual, target_.sigmas[k], source_.sigmas[i], tolerance),
-                          target_.labelOf(k)});
+                          target_.labelOf(k), k, i});
     }
   }
 
@@ -125,7 +184,7 @@ class Refiner {
       const int label = source_.labelOf(k);
       matches_.push_back({point - pose_.translation(), pose_.linear() * surface.normal(), residual,
                           weight(residual, source_.sigmas[k], target_.sigmas[i], tolerance),
-                          label < 0 ? -1 : target_planes + label});
+                          label < 0 ? -1 : target_planes + label, i, k});
     }
   }
 
@@ -166,6 +225,12 @@ RefinedPose refinePose(const ScanModel& target, const ScanModel& source,
   Refiner refiner(target, source, target_from_source, params);
   refiner.refine();
   return refiner.result();
+}
+
+Matrix6d covarianceAt(const ScanModel& target, const ScanModel& source,
+                      const Eigen::Isometry3d& target_from_source,
+                      const GlobalAlignmentParams& params) {
+  return Refiner(target, source, target_from_source, params).covariance();
 }
 
 RefinedPose informationAt(const ScanModel& target, const ScanModel& source,

@@ -27,6 +27,13 @@ RefinedPose refinePose(const ScanModel& target, const ScanModel& source,
                        const Eigen::Isometry3d& target_from_source,
                        const GlobalAlignmentParams& params);
 
+/// Covariance of (ω, v) of a refined pose: the noise of the samples, the part of it that samples of
+/// one plane share, and the sensor's distortion, which neighbouring rays of a scan share.
+/// Directions that nothing fixes have a variance without meaning. O(samples).
+Matrix6d covarianceAt(const ScanModel& target, const ScanModel& source,
+                      const Eigen::Isometry3d& target_from_source,
+                      const GlobalAlignmentParams& params);
+
 /// What the shared surfaces tell about a pose that stays as it is.
 RefinedPose informationAt(const ScanModel& target, const ScanModel& source,
                           const Eigen::Isometry3d& target_from_source,

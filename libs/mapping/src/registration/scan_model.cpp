@@ -54,12 +54,12 @@ std::vector<std::uint32_t> spread(const std::vector<std::uint32_t>& indices) {
 
 }  // namespace
 
-ScanModel::ScanModel(const AlignmentInput& input, const SensorModel& sensor,
+ScanModel::ScanModel(const AlignmentInput& input, const SensorModel& sensor_model,
                      const GlobalAlignmentParams& params)
     : features(*input.features),
       sided(input.sided),
       area(static_cast<double>(cloud().size()) * cloud().spacing * cloud().spacing),
-      sample_correlation(sensor.noise_correlation),
+      sensor(sensor_model),
       directions(directionsOf(primitives().planes, input.sided, params)),
       voxels(cloud(), params.cell_ratio * cloud().spacing, input.sided),
       free_space(input.views),

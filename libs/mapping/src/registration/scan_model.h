@@ -25,7 +25,7 @@ struct PlaneDirection {
 /// A scan made ready for the many questions of global alignment. Refers to the features it was made
 /// of.
 struct ScanModel {
-  ScanModel(const AlignmentInput& input, const SensorModel& sensor,
+  ScanModel(const AlignmentInput& input, const SensorModel& sensor_model,
             const GlobalAlignmentParams& params);
 
   const OrientedCloud& cloud() const { return features.cloud_in_body; }
@@ -41,9 +41,9 @@ struct ScanModel {
   }
 
   const ScanFeatures& features;
-  bool sided;                              ///< the sign of normals has a meaning
-  double area;                             ///< of all samples [m²]
-  double sample_correlation;               ///< of the errors of samples on one plane
+  bool sided;   ///< the sign of normals has a meaning
+  double area;  ///< of all samples [m²]
+  SensorModel sensor;
   std::vector<PlaneDirection> directions;  ///< largest area first
   VoxelIndex voxels;
   FreeSpace free_space;
