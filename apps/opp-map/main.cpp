@@ -74,7 +74,8 @@ void writeOccupancyMap(const MapOptions& options, const MapState& map, RunReport
 /// The files that tell of one map, as opposed to the run.
 opp::mapping::PlanarMap writeMap(const MapOptions& options, const MapState& map,
                                  const std::filesystem::path& folder) {
-  const opp::mapping::PlanarMap planar = opp::mapping::planarMapOf(map, options.params.planar);
+  const opp::mapping::PlanarMap planar =
+      opp::mapping::planarMapOf(map, options.params.primitives.sensor, options.params.planar);
   const opp::mapping::Trajectory trajectory = opp::mapping::trajectoryOf(map);
   opp::mapping::writeTumTrajectory(folder / "trajectory.tum", trajectory);
   opp::mapping::writePlanarMap(folder / "planar_map.json", planar);

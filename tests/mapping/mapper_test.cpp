@@ -102,7 +102,7 @@ TEST(Mapper, WhatHoldsNothingIsNotLocalized) {
 
 TEST(PlanarMapOf, DescribesTheRoom) {
   const Mapper mapper = mapRoom(2, 20, 0.001);
-  const PlanarMap map = planarMapOf(mapper.map(), PlanarParams());
+  const PlanarMap map = planarMapOf(mapper.map(), SensorModel(), PlanarParams());
   ASSERT_FALSE(map.planes.empty());
   for (const PlanarMapPlane& plane : map.planes) {
     EXPECT_FALSE(plane.polygons.empty());
@@ -135,8 +135,24 @@ TEST(PlanarMapOf, DescribesTheRoom) {
   }
 }
 
+TEST(PlanarMapOf, LeavesOutPlanesWhosePlaceIsUncertain) {
+  const Mapper mapper = mapRoom(2, 20, 0.001);
+  SensorModel sensor;
+  sensor.distortion_quadratic = 0.02;
+  PlanarParams params;
+  params.max_position_error = 100.0;
+  const std::size_t all = planarMapOf(mapper.map(), sensor, params).planes.size();
+  params.max_position_error = 0.003;
+  const PlanarMap some = planarMapOf(mapper.map(), sensor, params);
+  EXPECT_LT(some.planes.size(), all) << "the furniture is narrower than the walls";
+  EXPECT_FALSE(some.planes.empty());
+  params.max_position_error = 1e-6;
+  const PlanarMap none = planarMapOf(mapper.map(), sensor, params);
+  EXPECT_TRUE(none.planes.empty() && none.lines.empty() && none.corners.empty());
+}
+
 TEST(PlanarMapOf, AnEmptyMapIsEmpty) {
-  const PlanarMap map = planarMapOf(MapState(), PlanarParams());
+  const PlanarMap map = planarMapOf(MapState(), SensorModel(), PlanarParams());
   EXPECT_TRUE(map.planes.empty() && map.families.empty() && map.lines.empty() &&
               map.corners.empty());
 }

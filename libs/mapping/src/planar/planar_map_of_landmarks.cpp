@@ -10,6 +10,8 @@
 #include "opp/mapping/planar/plane_kinds.h"
 #include "opp/mapping/planar/snap_polygons.h"
 
+#include "planar/landmark_covariance.h"
+
 #include <Eigen/LU>
 #include <Eigen/SVD>
 
@@ -62,10 +64,10 @@ std::vector<PlaneExtent> extentsOf(const MapState& map, const PlanarParams& para
 }
 
 /// What a landmark's keyframes tell of it.
-PlanarMapPlane describe(const PlaneLandmark& landmark, const MapState& map) {
+PlanarMapPlane describe(const PlaneLandmark& landmark, const MapState& map,
+                        const SensorModel& sensor) {
   PlanarMapPlane plane;
   plane.plane = landmark.plane_in_map;
-  PointMoments moments;
   double squared_distances = 0.0;
   long samples = 0;
   for (const PrimitiveObservation& observation : landmark.observations) {
@@ -73,7 +75,6 @@ PlanarMapPlane describe(const PlaneLandmark& landmark, const MapState& map) {
     const PlanePrimitive& seen =
         keyframe.features.primitives_in_body.planes[Index(observation.primitive)];
     plane.observations.push_back(keyframe.features.timestamp);
-    moments.merge(transformed(keyframe.map_from_body, seen.moments));
     squared_distances += seen.support * seen.rms * seen.rms;
     samples += seen.support;
   }
@@ -81,22 +82,25 @@ PlanarMapPlane describe(const PlaneLandmark& landmark, const MapState& map) {
                            plane.observations.end());
   plane.points = samples;
   plane.rms = samples > 0 ? std::sqrt(squared_distances / static_cast<double>(samples)) : 0.0;
-  plane.covariance = planeCovariance(plane.plane, moments);
+  plane.covariance = landmarkCovariance(landmark, map, sensor);
   return plane;
 }
 
 /// Plane landmarks with polygons; `id_of_landmark` gives −1 for the others.
-void addPlanes(const MapState& map, const PlanarParams& params, std::vector<int>& id_of_landmark,
-               PlanarMap& result) {
+void addPlanes(const MapState& map, const SensorModel& sensor, const PlanarParams& params,
+               std::vector<int>& id_of_landmark, PlanarMap& result) {
   const std::vector<PlaneExtent> extents = extentsOf(map, params);
   id_of_landmark.assign(extents.size(), -1);
   for (Index l = 0; l < extents.size(); ++l) {
     std::vector<PlanarPolygon> polygons = buildPolygons(extents[l], params);
     if (polygons.empty()) continue;
-    PlanarMapPlane plane = describe(map.landmarks.planes[l], map);
+    PlanarMapPlane plane = describe(map.landmarks.planes[l], map, sensor);
+    plane.centroid = centroidOf(polygons, plane.plane.normal());
+    if (positionDeviation(plane.centroid, plane.plane, plane.covariance) >
+        params.max_position_error)
+      continue;
     plane.id = static_cast<int>(result.planes.size());
     plane.area = areaOf(polygons, plane.plane.normal());
-    plane.centroid = centroidOf(polygons, plane.plane.normal());
     plane.polygons = std::move(polygons);
     id_of_landmark[l] = plane.id;
     result.planes.push_back(std::move(plane));
@@ -221,10 +225,10 @@ void addFamilies(const MapState& map, const std::vector<int>& id_of_landmark, Pl
 
 }  // namespace
 
-PlanarMap planarMapOf(const MapState& map, const PlanarParams& params) {
+PlanarMap planarMapOf(const MapState& map, const SensorModel& sensor, const PlanarParams& params) {
   PlanarMap result;
   std::vector<int> id_of_landmark;
-  addPlanes(map, params, id_of_landmark, result);
+  addPlanes(map, sensor, params, id_of_landmark, result);
   addFamilies(map, id_of_landmark, result);
   addLines(map, id_of_landmark, result);
   addCorners(map, id_of_landmark, result);

@@ -21,6 +21,7 @@ struct PlanarParams {
   double tilt_tolerance = degToRad(10.0);
   double max_camera_tilt = degToRad(45.0);
   double wall_height = 1.0;
+  double max_position_error = 0.02;
 
   template <typename Self, typename F>
   static void visit(Self&& p, F&& f) {
@@ -40,6 +41,9 @@ struct PlanarParams {
             "the vertical is looked for within this of the first body frame's z axis"});
     f(p.wall_height,
       Field{"wall_height", "m", 0.0, 100.0, "vertical planes of at least this height are walls"});
+    f(p.max_position_error,
+      Field{"max_position_error", "m", 1e-6, 100.0,
+            "planes of a map whose place is known worse (standard deviation) are left out"});
   }
 };
 
