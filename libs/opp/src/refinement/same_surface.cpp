@@ -19,6 +19,9 @@ constexpr double kOneSurface = 4.0;
 constexpr double kAdjoin = 1.5;
 /// Pieces adjoin along at least this many pairs of samples; fewer tell nothing.
 constexpr double kLeastPairs = 3.0;
+/// What adjoins must be less than a step at 90 % confidence: where noise or a sample astride of an
+/// edge brings two layers together in one place, that tells too little.
+constexpr double kStepSigmas = 1.28;
 /// A step shows in full between samples that adjoin, less what a sample astride of it takes from
 /// both sides; along a bent surface they differ by its slope over one extent.
 constexpr double kStep = 0.5;
@@ -137,15 +140,20 @@ bool SameSurface::goesOn(std::size_t a, std::size_t b, const Eigen::Vector3d& no
     places[j].side += places[i].label;
   });
   // A sample's own label depends on its own error, which would show as a step.
-  double pairs = 0.0, jumps = 0.0;
+  double pairs = 0.0, jumps = 0.0, squares = 0.0;
   visitAdjoining(places, reach, [&](std::size_t i, std::size_t j) {
     if (places[i].side == 0 || places[j].side == 0) return;
     if ((places[i].side > 0) == (places[j].side > 0)) return;
     const double jump = places[j].offset - places[i].offset;
     jumps += places[j].side > 0 ? jump : -jump;
+    squares += jump * jump;
     pairs += 1.0;
   });
-  return pairs >= kLeastPairs && std::abs(jumps) < kStep * step * pairs;
+  if (pairs < kLeastPairs) return false;
+  const double mean = jumps / pairs;
+  // Along a border each sample has three partners on the other side.
+  const double error = std::sqrt(3.0 * std::max(0.0, squares / pairs - mean * mean) / pairs);
+  return std::abs(mean) + kStepSigmas * error < kStep * step;
 }
 
 void SameSurface::merge(std::size_t part, std::size_t whole) {
