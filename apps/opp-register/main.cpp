@@ -1,9 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The opp-mapping authors
 // SPDX-License-Identifier: BSD-3-Clause
 // opp-register: two clouds or observations in, the pose between them out.
-#include "opp/cloud/oriented_cloud.h"
-#include "opp/detect_primitives.h"
 #include "opp/mapping/core/mapper_params.h"
+#include "opp/mapping/core/scan_features.h"
 #include "opp/mapping/io/atomic_file.h"
 #include "opp/mapping/registration/register_scans.h"
 
@@ -102,10 +101,7 @@ Side detect(const Place& place, const MapperParams& params, int threads) {
   Side side;
   side.raw = opp::apps::readInput(place.file, place.index).cloud_in_body;
   side.known_view = opp::apps::isRawlog(place.file);
-  side.features.cloud_in_body =
-      opp::makeOrientedCloud(side.raw, params.primitives.sensor, params.primitives.sampling);
-  side.features.primitives_in_body =
-      opp::detectPrimitives(side.features.cloud_in_body, params.primitives, threads);
+  side.features = opp::mapping::detectFeatures(side.raw, params.primitives, threads);
   return side;
 }
 

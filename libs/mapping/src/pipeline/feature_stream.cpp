@@ -2,8 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "opp/mapping/pipeline/feature_stream.h"
 
-#include "opp/cloud/oriented_cloud.h"
-#include "opp/detect_primitives.h"
 #include "opp/parallel/parallel_for.h"
 
 #include <utility>
@@ -16,12 +14,10 @@ FeatureFrame computeFeatures(const Scan& scan,
                              const PrimitiveParams& params) {
   FeatureFrame frame;
   frame.odom_from_body = odom_from_body;
+  // One thread per scan: the scans themselves run side by side.
+  frame.features = detectFeatures(scan.cloud_in_body, params, 1);
   frame.features.timestamp = scan.timestamp;
   frame.features.scan_index = scan.index;
-  frame.features.cloud_in_body =
-      makeOrientedCloud(scan.cloud_in_body, params.sensor, params.sampling);
-  // One thread per scan: the scans themselves run side by side.
-  frame.features.primitives_in_body = detectPrimitives(frame.features.cloud_in_body, params, 1);
   return frame;
 }
 

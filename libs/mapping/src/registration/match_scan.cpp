@@ -42,8 +42,7 @@ class Matcher {
     // All surfaces weigh alike until the basin is found, so that one that moved does not win by its
     // many points; then each point counts, for precision.
     weighting_ = Weighting::kBySurface;
-    for (std::size_t level = firstLevel(); level > 0; --level)
-      iterate(map_.levels()[level], kMinIterations, kFirstAnnealing);
+    for (std::size_t level = firstLevel(); level > 0; --level) approach(level);
     iterate(map_.fine(), params_.max_iterations, kFirstAnnealing);
     associatePlanes(points_, pose_, map_, params_, planes_);
     weighting_ = Weighting::kByPoint;
@@ -70,6 +69,23 @@ class Matcher {
     return level;
   }
 
+  /// Iterates on a coarse level, unless that leads where the next finer one agrees less: surfels of
+  /// a metre average what is no one surface.
+  void approach(std::size_t level) {
+    const Eigen::Isometry3d start = pose_;
+    const double agreement = agreementWith(map_.levels()[level - 1]);
+    iterate(map_.levels()[level], kMinIterations, kFirstAnnealing);
+    if (agreementWith(map_.levels()[level - 1]) < agreement) pose_ = start;
+  }
+
+  /// Robust weights of the points' matches, as the first step on `surfels` will have them; sum.
+  double agreementWith(const SurfelMap& surfels) const {
+    double agreement = 0.0;
+    forEachMatch(surfels, extraVariance(surfels, kFirstAnnealing * surfels.voxelSize()),
+                 [&](const ScanPoint&, const PointMatch& match) { agreement += match.kernel; });
+    return agreement;
+  }
+
   /// Runs until the steps are small; false if that took more than `max_iterations`.
   bool iterate(const SurfelMap& surfels, int max_iterations, double first_annealing) {
     double annealing = first_annealing * surfels.voxelSize();
@@ -88,15 +104,18 @@ class Matcher {
 
   NormalEquations assemble(const SurfelMap& surfels, double annealing) const {
     Residuals residuals;
-    // Points on one surfel share its error, and a coarse one has more of them: together they say no
-    // more than one of the finest would, or they would lead astray a pose that the prior knows.
-    const double shared = surfels.voxelSize() / map_.fine().voxelSize();
-    const double extra_variance = std::pow(shared * annealing, 2);
+    const double extra_variance = extraVariance(surfels, annealing);
     addPoints(surfels, extra_variance, residuals);
     for (const ScanPlane& plane : planes_) {
       if (plane.landmark >= 0) addPlane(plane, extra_variance, residuals);
     }
     return equationsOf(residuals);
+  }
+
+  /// Points on one surfel share its error, and a coarse one has more of them: together they say no
+  /// more than one of the finest would, or they would lead astray a pose that the prior knows.
+  double extraVariance(const SurfelMap& surfels, double annealing) const {
+    return std::pow(surfels.voxelSize() / map_.fine().voxelSize() * annealing, 2);
   }
 
   NormalEquations equationsOf(const Residuals& residuals) const {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "opp/geometry/point_cloud.h"
+#include "opp/params/primitive_params.h"
 #include "opp/primitives/primitives.h"
 
 #include <cstddef>
@@ -17,5 +18,11 @@ struct ScanFeatures {
   OrientedCloud cloud_in_body;
   Primitives primitives_in_body;  ///< labels refer to the samples of cloud_in_body
 };
+
+/// Samples and primitives of one cloud, with detail (`ScanSurface`); time, session and index are
+/// left as they are by default. Same result for every `threads`. \throws std::invalid_argument as
+/// `makeScanSurface` and `detectPrimitives` do.
+ScanFeatures detectFeatures(const PointCloud& cloud_in_body, const PrimitiveParams& params,
+                            int threads = 1);
 
 }  // namespace opp::mapping
