@@ -114,7 +114,7 @@ TEST(BuildPolygons, DegenerateSupportHasNoPolygon) {
   extent.addSupport({std::numeric_limits<double>::quiet_NaN(), 0.0, 0.0}, kSpacing);
   EXPECT_TRUE(buildPolygons(extent, PlanarParams()).empty());
   PlaneExtent line(frame, 0.025);
-  for (double u = 0.0; u < 1.0; u += 0.01) line.addSupport({u, 0.0, 0.0}, 0.01);
+  for (double u = 0.0; u < 0.5; u += 0.01) line.addSupport({u, 0.0, 0.0}, 0.01);
   EXPECT_TRUE(buildPolygons(line, PlanarParams()).empty());
   EXPECT_EQ(areaOf({}, Eigen::Vector3d::UnitZ()), 0.0);
   EXPECT_EQ(centroidOf({}, Eigen::Vector3d::UnitZ()), Eigen::Vector3d::Zero());

@@ -14,7 +14,7 @@ struct PlanarParams {
   static constexpr std::string_view kSection = "planar";
   double cell = 0.025;
   double bridge = 0.15;
-  double min_area = 0.05;
+  double min_area = 0.02;
   double outline_tolerance = 0.04;
   double snap = 0.1;
   double open_fraction = 0.25;
