@@ -304,6 +304,25 @@ TEST(Tracker, DoesNotBelieveAJumpThatNoBodyMakes) {
   }
 }
 
+TEST(Tracker, ABodyThatWasCarriedOffIsNotFoundByOneScan) {
+  int surprised = 0;
+  for (std::uint64_t room = 0; room < 6; ++room) {
+    for (const double shift : {0.0, 0.5}) {
+      Started started = startAt(room, poseAt(0.0, 0.0));
+      for (int step = 1; step <= 5; ++step)
+        started.tracker.track(scanOf(room, step, poseAt(0.0, 0.0)), std::nullopt, started.map);
+      const ScanFeatures elsewhere = scanOf(room + 20, 6, poseAt(2.5, 0.8));
+      started.tracker.track(elsewhere, std::nullopt, started.map);
+      if (started.tracker.expected(7.0 * kTimeStep, std::nullopt)) continue;  // not surprised
+      ++surprised;
+      const TrackResult after =
+          started.tracker.track(scanOf(room, 7, poseAt(shift, shift)), std::nullopt, started.map);
+      EXPECT_EQ(after.localized(), shift == 0.0) << "room " << room << ": what hid the map passed";
+    }
+  }
+  EXPECT_GE(surprised, 6);
+}
+
 TEST(Likeliest, IsThePoseThatMotionClearlySpeaksFor) {
   PosePrior prior;
   prior.information = Matrix6d::Identity();

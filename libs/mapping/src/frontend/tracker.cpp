@@ -121,6 +121,8 @@ TrackResult Tracker::localize(const ScanFeatures& scan, const PosePrior& predict
     const bool expected = &prior == &predicted;
     if ((!expected || (!follows_ && outcome == TrackOutcome::kLocalized)) && !convincing(match))
       outcome = TrackOutcome::kLittleOverlap;
+    if (surprised_ && !resumes(match.map_from_body, predicted, scan, newest))
+      outcome = TrackOutcome::kImplausible;
     const bool localized = outcome == TrackOutcome::kLocalized;
     if (best.outcome != TrackOutcome::kNoMap && best.localized() >= localized &&
         (best.localized() != localized || best.match.overlap >= match.overlap))
@@ -160,15 +162,20 @@ TrackOutcome Tracker::outcomeOf(const MatchResult& match, const ScanFeatures& sc
   return known ? TrackOutcome::kLocalized : TrackOutcome::kUnobserved;
 }
 
-bool Tracker::contradicts(const Eigen::Isometry3d& map_from_body, const ScanFeatures& scan,
-                          const Keyframe& newest) const {
+double Tracker::conflict(const Eigen::Isometry3d& map_from_body, const ScanFeatures& scan,
+                         const Keyframe& newest) const {
   const double slack = std::max(newest.features.cloud_in_body.spacing, scan.cloud_in_body.spacing);
   const SensorModel& sensor = params_.primitives.sensor;
   const Verification verification =
       verifyPose(ScanModel(newest.features, sensor, params_.global_alignment),
                  ScanModel(scan, sensor, params_.global_alignment),
                  newest.map_from_body.inverse() * map_from_body, slack, params_.global_alignment);
-  return verification.conflict() > params_.frontend.max_conflict;
+  return verification.conflict();
+}
+
+bool Tracker::contradicts(const Eigen::Isometry3d& map_from_body, const ScanFeatures& scan,
+                          const Keyframe& newest) const {
+  return conflict(map_from_body, scan, newest) > params_.frontend.max_conflict;
 }
 
 bool Tracker::surprises(const PosePrior& predicted, const ScanFeatures& scan,
@@ -176,6 +183,15 @@ bool Tracker::surprises(const PosePrior& predicted, const ScanFeatures& scan,
   const double max_drift = params_.frontend.max_drift_translation;
   return positionVariance(predicted) <= max_drift * max_drift &&
          contradicts(predicted.map_from_body, scan, newest);
+}
+
+/// The body may have been carried off: that one scan resembles the map at another pose is no proof,
+/// least of all in a symmetric hall. Where motion expects it, and as free of conflict as what
+/// alignment believes, what hid the map has passed.
+bool Tracker::resumes(const Eigen::Isometry3d& map_from_body, const PosePrior& predicted,
+                      const ScanFeatures& scan, const Keyframe& newest) const {
+  return predicted.squaredSigmas(map_from_body) <= kClearly &&
+         conflict(map_from_body, scan, newest) <= params_.global_alignment.max_conflict;
 }
 
 std::optional<PosePrior> Tracker::relocalize(const ScanFeatures& scan, const PosePrior& last,
