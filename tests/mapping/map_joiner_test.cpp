@@ -3,6 +3,7 @@
 #include "opp/mapping/loop/map_joiner.h"
 
 #include "opp/mapping/core/se3.h"
+#include "opp/mapping/loop/map_conflict.h"
 #include "opp/mapping/pipeline/mapper.h"
 
 #include "support/random.h"
@@ -144,13 +145,13 @@ TEST(Mapper, GivesUpPartsOfFewScansAndKeepsTheFirst) {
 TEST(ConflictOf, IsSmallForTheTruePoseAndLargeForAWrongOne) {
   for (std::uint64_t room = 1; room <= 5; ++room) {
     const Mapper mapper = mapTwice(test::furnishedRoom(room), test::furnishedRoom(room + 20), 4);
-    const MapState& map = mapper.map();
+    const KeyframeViews views = viewsOf(mapper.map());
     const MapperParams params;
-    EXPECT_LT(conflictOf(map, map, Eigen::Isometry3d::Identity(), 10, params), 0.02);
+    EXPECT_LT(conflictOf(views, views, Eigen::Isometry3d::Identity(), params), 0.02);
     const Eigen::Isometry3d aside(Eigen::Translation3d(0.8, 0.5, 0.0));
-    EXPECT_GT(conflictOf(map, map, aside, 10, params), 0.1);
+    EXPECT_GT(conflictOf(views, views, aside, params), 0.1);
     const Eigen::Isometry3d away(Eigen::Translation3d(80.0, 0.0, 0.0));
-    EXPECT_EQ(conflictOf(map, map, away, 10, params), 1.0) << "nothing in common proves nothing";
+    EXPECT_EQ(conflictOf(views, views, away, params), 1.0) << "nothing in common proves nothing";
   }
 }
 

@@ -5,11 +5,9 @@
 #include "opp/mapping/backend/settle_map.h"
 #include "opp/mapping/loop/close_loops.h"
 #include "opp/mapping/loop/join_maps.h"
+#include "opp/mapping/loop/map_conflict.h"
 #include "opp/mapping/loop/match_place.h"
 #include "opp/mapping/loop/place.h"
-
-#include "registration/scan_model.h"
-#include "registration/verify_pose.h"
 
 #include <algorithm>
 
@@ -18,8 +16,6 @@ namespace {
 
 using Index = std::size_t;
 
-/// Keyframes of a part that are compared with the other before a join.
-constexpr int kComparedKeyframes = 12;
 /// Keyframes of a part that look for their places in the end, about.
 constexpr int kClaimants = 40;
 
@@ -33,43 +29,7 @@ void refute(const PlaceClaim& claim, MapPart& a, MapPart& b) {
   b.markRepeated(claim.keyframe_b);
 }
 
-/// The keyframe of `map` whose view is nearest to `view`; −1 if none is within `reach`.
-int nearestView(const MapState& map, const Eigen::Vector3d& view, double reach) {
-  int nearest = -1;
-  for (Index k = 0; k < map.keyframes.size(); ++k) {
-    const double distance = (map.keyframes[k].viewCentre() - view).norm();
-    if (distance >= reach) continue;
-    reach = distance;
-    nearest = static_cast<int>(k);
-  }
-  return nearest;
-}
-
 }  // namespace
-
-double conflictOf(const MapState& a, const MapState& b, const Eigen::Isometry3d& a_from_b,
-                  int keyframes, const MapperParams& params) {
-  const Index step = std::max<Index>(1, b.keyframes.size() / Index(keyframes));
-  int agreeing = 0, conflicting = 0;
-  for (Index k = 0; k < b.keyframes.size(); k += step) {
-    const Keyframe& of_b = b.keyframes[k];
-    const int near = nearestView(a, a_from_b * of_b.viewCentre(), params.loop.search_distance);
-    if (near < 0) continue;
-    const Keyframe& of_a = a.keyframes[Index(near)];
-    const ScanModel target(of_a.features, params.primitives.sensor, params.global_alignment);
-    const ScanModel source(of_b.features, params.primitives.sensor, params.global_alignment);
-    const Eigen::Isometry3d target_from_source =
-        of_a.map_from_body.inverse() * a_from_b * of_b.map_from_body;
-    const Verification seen = verifyPose(target, source, target_from_source,
-                                         params.loop.agree_translation, params.global_alignment);
-    for (const Agreement* side : {&seen.of_source, &seen.of_target}) {
-      agreeing += side->agreeing;
-      conflicting += side->conflicting;
-    }
-  }
-  const int both = agreeing + conflicting;
-  return both == 0 ? 1.0 : static_cast<double>(conflicting) / both;
-}
 
 ClaimPool& MapJoiner::pool(int part_a, int part_b) {
   return pools_.try_emplace({part_a, part_b}, params_.loop).first->second;
@@ -134,8 +94,8 @@ std::vector<PlaceClaim> MapJoiner::provenClaims(MapPart& host, MapPart& guest) {
   });
   std::vector<PlaceClaim> agreed = claims.agreed();
   if (agreed.empty() ||
-      conflictOf(host.map, guest.map, agreed.front().map_a_from_map_b, kComparedKeyframes,
-                 params_) <= params_.global_alignment.max_conflict)
+      conflictOf(viewsOf(host.map), viewsOf(guest.map), agreed.front().map_a_from_map_b, params_) <=
+          params_.global_alignment.max_conflict)
     return agreed;
   for (const PlaceClaim& claim : agreed) refute(claim, host, guest);
   return {};

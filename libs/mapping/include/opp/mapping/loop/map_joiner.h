@@ -47,10 +47,4 @@ class MapJoiner {
   std::map<std::pair<int, int>, ClaimPool> pools_;  ///< by ids of the parts
 };
 
-/// How much two maps contradict each other if `a_from_b` is right: of the samples of keyframes with
-/// a common view, conflicts with free space over agreements and conflicts; 1 if there is no common
-/// view. At most `keyframes` of b, spread evenly, are looked at.
-double conflictOf(const MapState& a, const MapState& b, const Eigen::Isometry3d& a_from_b,
-                  int keyframes, const MapperParams& params);
-
 }  // namespace opp::mapping
