@@ -86,6 +86,33 @@ TEST(MatchPlace, FindsNothingInAnotherRoom) {
   }
 }
 
+TEST(MatchPlace, BelievesNoExpectedPoseThatFreeSpaceDenies) {
+  test::Random random(2);
+  for (int k = 0; k < 10; ++k) {
+    // The same bare room, but for two walls that stand nearer: most of the scan agrees.
+    const Eigen::Vector3d corner(random.uniform(1.7, 2.0), random.uniform(1.7, 2.0), 3.5);
+    const Eigen::Isometry3d at = standing(0.0, 0.0, 0.0);
+    const auto scan = [&](double nearer, std::uint64_t seed) {
+      test::SyntheticOptions options;
+      options.spacing = 0.08;
+      options.sigma = 0.003;
+      options.seed = seed;
+      const auto room = test::roomSides({-corner.x(), -corner.y(), 0.0},
+                                        {corner.x() - nearer, corner.y() - nearer, corner.z()});
+      return test::trueFeatures(test::sampleScene(room, at.translation(), at.inverse(), options));
+    };
+    MapState map;
+    MatchResult match;
+    match.map_from_body = at;
+    insertKeyframe(scan(0.0, 1), match, SensorModel(), map);
+    PosePrior expected;
+    expected.map_from_body = at;
+    expected.information = 1e4 * Matrix6d::Identity();
+    EXPECT_TRUE(findIn(map, scan(0.0, 2), expected)) << "room " << k;
+    EXPECT_FALSE(findIn(map, scan(0.9, 2), expected)) << "room " << k;
+  }
+}
+
 TEST(MatchPlace, OfAnEmptyScanIsNothing) {
   EXPECT_FALSE(findIn(mapOf(1, standing(0.0, 0.0, 0.0)), ScanFeatures(), std::nullopt));
 }

@@ -30,6 +30,16 @@ PlaceMatch describe(const MapState& map, int keyframe, const MatchResult& match)
   return result;
 }
 
+/// Whether too much of scan and place stands where the other looked through.
+bool contradicts(const Place& place, const ScanFeatures& scan, const Keyframe& keyframe,
+                 const MatchResult& match, const MapperParams& params) {
+  const GlobalAlignment judged =
+      judgePose(place.input(), scan, keyframe.map_from_body.inverse() * match.map_from_body,
+                params.primitives.sensor, params.global_alignment);
+  return !judged.hypotheses.empty() &&
+         judged.hypotheses.front().conflict > params.global_alignment.max_conflict;
+}
+
 }  // namespace
 
 double connectedVariance(const MapState& map, int keyframe, const MapperParams& params) {
@@ -50,9 +60,11 @@ std::optional<PlaceMatch> matchPlace(const MapState& map, int keyframe, const Sc
                                      const MapperParams& params) {
   const std::vector<int> place = connectedViews(map, keyframe, params.loop.place_keyframes, params);
   const LocalMap local = localMapOf(map, place, params);
+  const Place merged = placeOf(map, keyframe, place, params);
   if (expected) {
     const MatchResult match = matchScan(scan, local, *expected, params.registration);
-    if (match.overlap >= params.loop.min_overlap) {
+    if (match.overlap >= params.loop.min_overlap &&
+        !contradicts(merged, scan, keyframeOf(map, keyframe), match, params)) {
       PlaceMatch result = describe(map, keyframe, match);
       result.variance = viewVariance(covarianceOf(match.information), keyframeOf(map, keyframe));
       // What the scan leaves open is still where it was expected, which proves nothing.
@@ -61,7 +73,6 @@ std::optional<PlaceMatch> matchPlace(const MapState& map, int keyframe, const Sc
       return result;
     }
   }
-  const Place merged = placeOf(map, keyframe, place, params);
   const GlobalAlignment alignment = alignGlobally(
       merged.input(), surroundings, params.primitives.sensor, params.global_alignment);
   if (alignment.outcome != AlignmentOutcome::kAligned) return std::nullopt;
