@@ -5,6 +5,7 @@
 #include "opp/geometry/constants.h"
 #include "opp/mapping/core/se3.h"
 #include "opp/mapping/frontend/insert_keyframe.h"
+#include "opp/mapping/loop/close_loose_ties.h"
 
 #include "support/random.h"
 #include "support/synthetic_features.h"
@@ -125,6 +126,61 @@ TEST(LoopCloser, LooksForNoLoopAmongKeyframesThatAreTied) {
   const MapState map = openLoop(1, Vector6d::Zero(), 1e-3, 4, closer, closed);
   EXPECT_FALSE(closed);
   EXPECT_EQ(map.loop_closures, 0U);
+}
+
+/// Two keyframes at the true pose, and some that came back to the room after a way of loose ties.
+MapState looseMap(std::uint64_t room, const Vector6d& drift, int keyframes) {
+  MapState map;
+  addKeyframe(room, 0, poseAt(0), 1e-6, map);
+  addKeyframe(room, 1, poseAt(1), 1e-6, map);
+  for (int k = 0; k < keyframes; ++k) {
+    const int step = 2 + k;
+    addKeyframe(room, step, retract(Eigen::Isometry3d::Identity(), drift) * poseAt(step),
+                k == 0 ? 0.06 : 1e-6, map);
+  }
+  return map;
+}
+
+constexpr double kLooseVariance = 0.02;  // m²
+
+TEST(CloseLooseTies, FindsWhatNoKeyframeLookedForAsTheMapGrew) {
+  test::Random random(3);
+  int closed = 0;
+  for (std::uint64_t room = 1; room <= 20; ++room) {
+    Vector6d drift;
+    drift << random.vector(0.02), random.vector(0.2);
+    MapState map = looseMap(room, drift, 3);
+    if (closeLooseTies(kLooseVariance, MapperParams(), map) == 0) continue;
+    ++closed;
+    EXPECT_EQ(map.loop_closures, 1U);
+    for (std::size_t k = 0; k < map.keyframes.size(); ++k) {
+      const Vector6d error =
+          difference(poseAt(static_cast<int>(k)), map.keyframes[k].map_from_body);
+      EXPECT_LT(error.norm(), 5e-3) << "room " << room << " keyframe " << k;
+    }
+  }
+  EXPECT_GE(closed, 19);
+}
+
+TEST(CloseLooseTies, LeavesAsItIsWhatOneKeyframeAloneSaw) {
+  for (std::uint64_t room = 1; room <= 10; ++room) {
+    MapState map = looseMap(room, Vector6d::Constant(0.01), 1);
+    const MapState before = map;
+    EXPECT_EQ(closeLooseTies(kLooseVariance, MapperParams(), map), 0) << "room " << room;
+    EXPECT_EQ(map.factors.relative_poses.size(), before.factors.relative_poses.size());
+    for (std::size_t k = 0; k < before.keyframes.size(); ++k) {
+      EXPECT_EQ(map.keyframes[k].map_from_body.matrix(),
+                before.keyframes[k].map_from_body.matrix());
+    }
+  }
+}
+
+TEST(CloseLooseTies, HasNothingToDoWhereAllIsTied) {
+  MapState map = looseMap(1, Vector6d::Zero(), 2);
+  for (KeyframeLink& link : map.links) link.variance = 1e-6;
+  EXPECT_EQ(closeLooseTies(kLooseVariance, MapperParams(), map), 0);
+  MapState empty;
+  EXPECT_EQ(closeLooseTies(kLooseVariance, MapperParams(), empty), 0);
 }
 
 TEST(AcceptClaims, TakesBackWhatTheRestOfTheMapDenies) {

@@ -6,6 +6,7 @@
 #include "opp/mapping/frontend/build_local_map.h"
 #include "opp/mapping/frontend/insert_keyframe.h"
 #include "opp/mapping/frontend/merge_landmarks.h"
+#include "opp/mapping/loop/close_loose_ties.h"
 #include "opp/mapping/loop/match_place.h"
 #include "opp/mapping/loop/split_map.h"
 
@@ -123,6 +124,7 @@ void Mapper::splitParts() {
   const double max_drift = params_.frontend.max_drift_translation;
   std::vector<MapPart> parts;
   for (MapPart& part : parts_) {
+    if (params_.loop.close_loops) closeLooseTies(max_drift * max_drift, params_, part.map);
     std::vector<MapState> maps = splitMap(std::move(part.map), max_drift * max_drift);
     if (maps.size() == 1) {
       part.id = next_part_++;
