@@ -17,28 +17,6 @@
 
 namespace opp::mapping {
 
-std::string_view describe(TrackOutcome outcome) {
-  switch (outcome) {
-    case TrackOutcome::kLocalized:
-      return "localized";
-    case TrackOutcome::kEmptyScan:
-      return "the scan is empty";
-    case TrackOutcome::kNoMap:
-      return "there is no map yet";
-    case TrackOutcome::kLittleOverlap:
-      return "too little of the scan agrees with the map";
-    case TrackOutcome::kContradicted:
-      return "scan and map each show something where the other looked through";
-    case TrackOutcome::kImplausible:
-      return "the body cannot have moved so far since the last scan";
-    case TrackOutcome::kUnobserved:
-      return "the scan leaves a direction open that was not seen for too long";
-    case TrackOutcome::kForgotten:
-      return "nothing was recognized for so long that the body may have turned around";
-  }
-  return "";
-}
-
 Tracker::Tracker(const MapperParams& params) : params_(params), motion_(params.frontend) {}
 
 void Tracker::start(const StampedPose& pose,
@@ -68,6 +46,16 @@ bool excludesHalfTurn(const PosePrior& prior) {
 double positionVariance(const PosePrior& prior) {
   const Matrix6d covariance = prior.information.inverse();
   return largestVariance(covariance.bottomRightCorner<3, 3>());
+}
+
+/// How a scan fares against the newest keyframe.
+Verification verified(const Eigen::Isometry3d& map_from_body, const ScanFeatures& scan,
+                      const Keyframe& newest, const MapperParams& params) {
+  const double slack = std::max(newest.features.cloud_in_body.spacing, scan.cloud_in_body.spacing);
+  const SensorModel& sensor = params.primitives.sensor;
+  return verifyPose(ScanModel(newest.features, sensor, params.global_alignment),
+                    ScanModel(scan, sensor, params.global_alignment),
+                    newest.map_from_body.inverse() * map_from_body, slack, params.global_alignment);
 }
 
 }  // namespace
@@ -121,7 +109,8 @@ TrackResult Tracker::localize(const ScanFeatures& scan, const PosePrior& predict
     const bool expected = &prior == &predicted;
     if ((!expected || (!follows_ && outcome == TrackOutcome::kLocalized)) && !convincing(match))
       outcome = TrackOutcome::kLittleOverlap;
-    if (surprised_ && !resumes(match.map_from_body, predicted, scan, newest))
+    if (slidAway(match.map_from_body, predicted, scan, newest) ||
+        (surprised_ && !resumes(match.map_from_body, predicted, scan, newest)))
       outcome = TrackOutcome::kImplausible;
     const bool localized = outcome == TrackOutcome::kLocalized;
     if (best.outcome != TrackOutcome::kNoMap && best.localized() >= localized &&
@@ -162,20 +151,9 @@ TrackOutcome Tracker::outcomeOf(const MatchResult& match, const ScanFeatures& sc
   return known ? TrackOutcome::kLocalized : TrackOutcome::kUnobserved;
 }
 
-double Tracker::conflict(const Eigen::Isometry3d& map_from_body, const ScanFeatures& scan,
-                         const Keyframe& newest) const {
-  const double slack = std::max(newest.features.cloud_in_body.spacing, scan.cloud_in_body.spacing);
-  const SensorModel& sensor = params_.primitives.sensor;
-  const Verification verification =
-      verifyPose(ScanModel(newest.features, sensor, params_.global_alignment),
-                 ScanModel(scan, sensor, params_.global_alignment),
-                 newest.map_from_body.inverse() * map_from_body, slack, params_.global_alignment);
-  return verification.conflict();
-}
-
 bool Tracker::contradicts(const Eigen::Isometry3d& map_from_body, const ScanFeatures& scan,
                           const Keyframe& newest) const {
-  return conflict(map_from_body, scan, newest) > params_.frontend.max_conflict;
+  return verified(map_from_body, scan, newest, params_).conflict() > params_.frontend.max_conflict;
 }
 
 bool Tracker::surprises(const PosePrior& predicted, const ScanFeatures& scan,
@@ -185,13 +163,24 @@ bool Tracker::surprises(const PosePrior& predicted, const ScanFeatures& scan,
          contradicts(predicted.map_from_body, scan, newest);
 }
 
+/// Little structure beside a bare wall can lead registration off along the wall. What motion calls
+/// impossible must at least agree with the map better than what motion says.
+bool Tracker::slidAway(const Eigen::Isometry3d& map_from_body, const PosePrior& predicted,
+                       const ScanFeatures& scan, const Keyframe& newest) const {
+  return predicted.squaredSigmas(map_from_body) > kPossible &&
+         clarity(verified(map_from_body, scan, newest, params_),
+                 verified(predicted.map_from_body, scan, newest, params_)) <
+             -params_.global_alignment.min_slide_clarity;
+}
+
 /// The body may have been carried off: that one scan resembles the map at another pose is no proof,
 /// least of all in a symmetric hall. Where motion expects it, and as free of conflict as what
 /// alignment believes, what hid the map has passed.
 bool Tracker::resumes(const Eigen::Isometry3d& map_from_body, const PosePrior& predicted,
                       const ScanFeatures& scan, const Keyframe& newest) const {
   return predicted.squaredSigmas(map_from_body) <= kClearly &&
-         conflict(map_from_body, scan, newest) <= params_.global_alignment.max_conflict;
+         verified(map_from_body, scan, newest, params_).conflict() <=
+             params_.global_alignment.max_conflict;
 }
 
 std::optional<PosePrior> Tracker::relocalize(const ScanFeatures& scan, const PosePrior& last,

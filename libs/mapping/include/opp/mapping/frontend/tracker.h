@@ -21,8 +21,8 @@ enum class TrackOutcome {
   kNoMap,          ///< nothing to be localized in: `Tracker::start` and `setLocalMap` come first
   kLittleOverlap,  ///< too small a share of the scan agrees with the map
   kContradicted,   ///< what agrees is outweighed by what stands where the other looked through
-  /// The body cannot have moved so since the last scan; or the map denied where motion put it, and
-  /// this is somewhere else.
+  /// The body cannot have moved so since the last scan; or this is far from where motion puts it,
+  /// and the map denied that before, or agrees better with it now.
   kImplausible,
   kUnobserved,  ///< a direction has not been seen for so long that no prediction can be trusted
   kForgotten,   ///< lost for so long that the body may have turned around
@@ -84,13 +84,15 @@ class Tracker {
   bool convincing(const MatchResult& match) const;
   TrackOutcome outcomeOf(const MatchResult& match, const ScanFeatures& scan, const PosePrior& moved,
                          const Keyframe& newest) const;
-  double conflict(const Eigen::Isometry3d& map_from_body, const ScanFeatures& scan,
-                  const Keyframe& newest) const;
   bool contradicts(const Eigen::Isometry3d& map_from_body, const ScanFeatures& scan,
                    const Keyframe& newest) const;
   /// Whether a pose that was well predicted contradicts the scan: the body was moved.
   bool surprises(const PosePrior& predicted, const ScanFeatures& scan,
                  const Keyframe& newest) const;
+  /// Whether registration left a likely pose for an impossible one that explains the scan clearly
+  /// worse: alike says nothing, as the two may be millimetres apart.
+  bool slidAway(const Eigen::Isometry3d& map_from_body, const PosePrior& predicted,
+                const ScanFeatures& scan, const Keyframe& newest) const;
   /// Whether a body that surprised before is back on its way.
   bool resumes(const Eigen::Isometry3d& map_from_body, const PosePrior& predicted,
                const ScanFeatures& scan, const Keyframe& newest) const;
