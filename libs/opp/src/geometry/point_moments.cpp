@@ -12,10 +12,16 @@ namespace opp {
 
 void PointMoments::add(const Eigen::Vector3d& point, double weight) {
   if (!(weight > 0.0)) return;
-  const Eigen::Vector3d delta = point - mean_;
+  // Number by number: vectors would be stored in parts and loaded whole, which stalls loops.
+  const double x = point[0] - mean_[0], y = point[1] - mean_[1], z = point[2] - mean_[2];
   weight_ += weight;
-  mean_ += (weight / weight_) * delta;
-  scatter_ += weight * delta * (point - mean_).transpose();
+  const double part = weight / weight_;
+  mean_[0] += part * x, mean_[1] += part * y, mean_[2] += part * z;
+  const double wx = weight * x, wy = weight * y, wz = weight * z;
+  for (Eigen::Index k = 0; k < 3; ++k) {
+    const double rest = point[k] - mean_[k];
+    scatter_(0, k) += wx * rest, scatter_(1, k) += wy * rest, scatter_(2, k) += wz * rest;
+  }
 }
 
 void PointMoments::merge(const PointMoments& other) {

@@ -122,8 +122,7 @@ struct Match {
 };
 
 Match matchOf(const WeightedSample& sample, const Candidates::Entry* begin,
-              const Candidates::Entry* end, const std::vector<PlaneFit>& fits,
-              double least_cosine) {
+              const Candidates::Entry* end, const std::vector<Plane>& planes, double least_cosine) {
   constexpr double kExplained = kExplainedSigmas * kExplainedSigmas;
   Match best;
   std::uint32_t group = 0;
@@ -131,7 +130,7 @@ Match matchOf(const WeightedSample& sample, const Candidates::Entry* begin,
     if (entry->group != group && best.distance * best.distance < kExplained * sample.variance)
       break;
     group = entry->group;
-    const Plane& plane = fits[entry->plane].plane;
+    const Plane& plane = planes[entry->plane];
     const double distance = std::abs(plane.signedDistance(sample.point));
     if (distance >= best.distance) continue;
     if (!(std::abs(plane.normal().dot(sample.normal)) >= least_cosine)) continue;
@@ -169,6 +168,8 @@ void assignSamples(const std::vector<WeightedSample>& samples, const Candidates&
     }
     fits[k].sums = sums;
   }
+  std::vector<Plane> planes;  // side by side: the fits together would not fit the cache
+  for (const PlaneFit& fit : fits) planes.push_back(fit.plane);
   for (const std::uint32_t i : candidates.contested) {
     const Candidates::Entry* begin = candidates.entries.data() + candidates.begin[i];
     const Candidates::Entry* end = candidates.entries.data() + candidates.begin[i + 1];
@@ -179,7 +180,7 @@ void assignSamples(const std::vector<WeightedSample>& samples, const Candidates&
       match.plane = static_cast<std::uint32_t>(labels[i]);
       match.distance = std::abs(fits[match.plane].plane.signedDistance(samples[i].point));
     } else {
-      match = matchOf(samples[i], begin, end, fits, least_cosine);
+      match = matchOf(samples[i], begin, end, planes, least_cosine);
     }
     PlaneFit& fit = fits[match.plane];
     const bool matched =

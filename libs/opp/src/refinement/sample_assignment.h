@@ -50,14 +50,15 @@ struct SampleSums {
     const double square = distance * distance;
     const double root = 1.0 - square * precision * weight_slope;
     if (!(root > 0.0)) return false;
-    const double robust = root * root;
-    const Eigen::Vector3d x = sample.point - origin;
-    const Eigen::Vector3d wx = robust * precision * x;
-    weight += robust * precision;
-    first += wx;
-    second.col(0) += wx * x[0];
-    second.col(1).tail<2>() += wx.tail<2>() * x[1];
-    second(2, 2) += wx[2] * x[2];
+    const double robust = root * root, w = robust * precision;
+    // Number by number: vectors would be stored in parts and loaded whole, which stalls the loop.
+    const double x = sample.point[0] - origin[0], y = sample.point[1] - origin[1],
+                 z = sample.point[2] - origin[2];
+    const double wx = w * x, wy = w * y, wz = w * z;
+    weight += w;
+    first[0] += wx, first[1] += wy, first[2] += wz;
+    second(0, 0) += wx * x, second(1, 0) += wy * x, second(2, 0) += wz * x;
+    second(1, 1) += wy * y, second(2, 1) += wz * y, second(2, 2) += wz * z;
     robust_weight += robust;
     square_sum += robust * square;
     variance_sum += robust * sample.variance;
