@@ -4,7 +4,10 @@
 
 #include "refinement/plane_bookkeeping.h"
 
+#include <Eigen/Geometry>
+
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <tuple>
 
@@ -79,6 +82,20 @@ void visitAdjoining(const std::vector<Place>& places, double reach, const Visit&
   }
 }
 
+/// Drops the places that cannot tell: samples of both planes, or others beside such, adjoin only
+/// within two reaches of the places of both, and to know these one more is needed. `boxes`: of the
+/// first and of the second plane's places (along, across).
+void keepWherePlanesMeet(std::array<Eigen::AlignedBox2d, 2> boxes, double reach,
+                         std::vector<Place>& places) {
+  const Eigen::Vector2d margin = Eigen::Vector2d::Constant(3.0 * reach);
+  for (Eigen::AlignedBox2d& box : boxes) box = {box.min() - margin, box.max() + margin};
+  const Eigen::AlignedBox2d common = boxes[0].intersection(boxes[1]);
+  const auto outside = [&](const Place& place) {
+    return !common.contains(Eigen::Vector2d(place.along, place.across));
+  };
+  places.erase(std::remove_if(places.begin(), places.end(), outside), places.end());
+}
+
 }  // namespace
 
 SameSurface::SameSurface(const std::vector<PlaneFit>& fits,
@@ -120,17 +137,23 @@ bool SameSurface::goesOn(std::size_t a, std::size_t b, const Eigen::Vector3d& no
                          double step) const {
   const Eigen::Matrix<double, 3, 2> tangents = tangentBasis(normal);
   std::vector<Place> places;
-  double widest = 0.0;
+  places.reserve(members_[a].size() + members_[b].size());
+  std::array<Eigen::AlignedBox2d, 2> boxes;
+  double largest_area = 0.0;
   for (const std::size_t plane : {a, b}) {
     for (const std::uint32_t i : members_[plane]) {
       const WeightedSample& sample = samples_[i];
-      places.push_back({0.0, tangents.col(0).dot(sample.point), tangents.col(1).dot(sample.point),
-                        normal.dot(sample.point), sample.area, plane == a ? 1 : -1, 0});
-      widest = std::max(widest, std::sqrt(sample.area));
+      const Eigen::Vector2d place(tangents.col(0).dot(sample.point),
+                                  tangents.col(1).dot(sample.point));
+      places.push_back({0.0, place.x(), place.y(), normal.dot(sample.point), sample.area,
+                        plane == a ? 1 : -1, 0});
+      boxes[plane == a ? 0 : 1].extend(place);
+      largest_area = std::max(largest_area, sample.area);
     }
   }
-  const double reach = kAdjoin * widest;
+  const double reach = kAdjoin * std::sqrt(largest_area);
   if (!(reach > 0.0)) return false;  // samples without an extent adjoin nothing
+  keepWherePlanesMeet(boxes, reach, places);
   for (Place& place : places) place.row = std::floor(place.across / reach);
   std::sort(places.begin(), places.end(), [](const Place& p, const Place& q) {
     return std::tie(p.row, p.along, p.across) < std::tie(q.row, q.along, q.across);
