@@ -6,6 +6,7 @@
 
 #include "detection/gather_hypotheses.h"
 #include "graph/plane_support.h"
+#include "graph/sample_assigner.h"
 
 #include <algorithm>
 #include <cmath>
@@ -32,8 +33,8 @@ struct Builder {
   const GraphParams& params;
   SampleAssigner assigner;
   UnionFind sets;
-  std::vector<Cluster> clusters;
-  std::vector<int> labels;  ///< cluster of each sample; −1: none
+  std::vector<Cluster> clusters = {};
+  std::vector<int> labels = {};  ///< cluster of each sample; −1: none
 };
 
 std::vector<std::size_t> descending(std::size_t count, const std::vector<double>& keys) {
@@ -223,13 +224,8 @@ PlaneGraph buildPlaneGraph(const OrientedCloud& cloud, const OppHypotheses& hypo
                            const SensorModel& sensor, const GraphParams& params) {
   validate(params);
   if (hypotheses.planes.empty()) return {};
-  Builder builder{cloud,
-                  hypotheses,
-                  params,
-                  SampleAssigner(cloud, sensor, params),
-                  UnionFind(hypotheses.planes.size()),
-                  {},
-                  {}};
+  Builder builder{cloud, hypotheses, params, SampleAssigner(cloud, sensor, params),
+                  UnionFind(hypotheses.planes.size())};
   gatherClusters(builder);
   for (int round = 0; round < params.rounds; ++round) {
     assignAndFit(builder);

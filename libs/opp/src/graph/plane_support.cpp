@@ -7,22 +7,26 @@
 #include <Eigen/Eigenvalues>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdint>
 #include <limits>
-#include <utility>
 
 namespace opp {
 namespace {
 
-/// A sample's cell in the plane's grid; ordered row by row.
+/// A cell of the plane's grid; ordered row by row.
 struct Cell {
   std::int64_t row, column;
   bool operator<(const Cell& other) const {
     return row != other.row ? row < other.row : column < other.column;
   }
   bool operator==(const Cell& other) const { return row == other.row && column == other.column; }
+};
+
+/// A sample in its cell.
+struct Place {
+  Cell cell;
+  double x, y;  ///< in the plane [m]
 };
 
 Eigen::Vector3d pointOf(const OrientedCloud& cloud, int i) {
@@ -32,16 +36,17 @@ Eigen::Vector3d pointOf(const OrientedCloud& cloud, int i) {
 /// Joins each cell of the sorted list with its neighbours in this and the previous row.
 UnionFind connect(const std::vector<Cell>& cells) {
   UnionFind sets(cells.size());
+  std::size_t above = 0;  // the first cell that is not before the neighbour above on the left
   for (std::size_t i = 0; i < cells.size(); ++i) {
     const Cell& cell = cells[i];
     if (i > 0 && cells[i - 1].row == cell.row && cells[i - 1].column + 1 == cell.column) {
       sets.join(i - 1, i);
     }
     const Cell above_left{cell.row - 1, cell.column - 1};
-    auto above = std::lower_bound(cells.begin(), cells.end(), above_left);
-    for (; above != cells.end() && above->row == cell.row - 1 && above->column <= cell.column + 1;
-         ++above) {
-      sets.join(static_cast<std::size_t>(above - cells.begin()), i);
+    while (cells[above] < above_left) ++above;
+    for (std::size_t k = above; cells[k].row < cell.row && cells[k].column <= cell.column + 1;
+         ++k) {
+      sets.join(k, i);
     }
   }
   return sets;
@@ -51,17 +56,18 @@ UnionFind connect(const std::vector<Cell>& cells) {
 struct Spread {
   double count = 0.0;
   Eigen::Vector2d sum = Eigen::Vector2d::Zero();
-  Eigen::Matrix2d squares = Eigen::Matrix2d::Zero();
+  Eigen::Matrix2d squares = Eigen::Matrix2d::Zero();  ///< lower triangle
 
-  void add(const Eigen::Vector2d& x) {
+  void add(double x, double y) {
     count += 1.0;
-    sum += x;
-    squares += x * x.transpose();
+    sum[0] += x, sum[1] += y;
+    squares(0, 0) += x * x, squares(1, 0) += y * x, squares(1, 1) += y * y;
   }
   /// A rectangle of width w has variance w²/12.
   double width() const {
     const Eigen::Vector2d mean = sum / count;
     const Eigen::Matrix2d covariance = squares / count - mean * mean.transpose();
+    // Reads the lower triangle.
     const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> eigen(covariance, Eigen::EigenvaluesOnly);
     return std::sqrt(12.0 * std::max(0.0, eigen.eigenvalues()[0]));
   }
@@ -99,97 +105,6 @@ std::size_t countNear(const std::vector<std::int64_t>& cells,
 
 }  // namespace
 
-SampleAssigner::SampleAssigner(const OrientedCloud& cloud, const SensorModel& sensor,
-                               const GraphParams& params)
-    : cloud_(cloud),
-      blocks_(cloud.points),
-      cos_normal_gate_(static_cast<float>(std::cos(params.normal_gate))) {
-  const auto count = static_cast<Eigen::Index>(cloud.size());
-  points_.resize(count, 3);
-  normals_.resize(count, 3);
-  gates_.resize(count);
-  weights_.reserve(cloud.size());
-  const SensorModel shown = sensor.withCorrelation(cloud.noise_correlation);
-  for (std::size_t i = 0; i < cloud.size(); ++i) {
-    const double sigma = shown.meanSigma(static_cast<double>(cloud.sigmas[i]),
-                                         static_cast<double>(cloud.weights[i]));
-    weights_.push_back(1.0 / (sigma * sigma));
-  }
-  for (Eigen::Index row = 0; row < count; ++row) {
-    const std::size_t i = blocks_.order()[static_cast<std::size_t>(row)];
-    points_.row(row) = cloud.points[i].transpose();
-    normals_.row(row) = cloud.normals[i].transpose();
-    const double gate =
-        params.noise_gate / std::sqrt(weights_[i]) + params.flatness * cloud.extent(i);
-    largest_gate_ = std::max(largest_gate_, gate);
-    gates_[row] = static_cast<float>(gate);
-  }
-}
-
-template <typename Visit>
-void SampleAssigner::forEachCandidate(const LocalPlane& local, const Visit& visit) const {
-  const float *x = points_.col(0).data(), *y = points_.col(1).data(), *z = points_.col(2).data();
-  const float *nx = normals_.col(0).data(), *ny = normals_.col(1).data(),
-              *nz = normals_.col(2).data();
-  const Eigen::Vector4f coefficients = local.plane.coefficients().cast<float>();
-  const Eigen::Vector3f low = local.reach.min(), high = local.reach.max();
-  const float a = coefficients[0], b = coefficients[1], c = coefficients[2], d = coefficients[3];
-  blocks_.visitNear(
-      local.plane, local.reach, largest_gate_, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i) {
-          const float distance = std::abs(a * x[i] + b * y[i] + c * z[i] + d);
-          const float cosine = std::abs(a * nx[i] + b * ny[i] + c * nz[i]);
-          const bool inside = (x[i] >= low.x()) & (x[i] <= high.x()) & (y[i] >= low.y()) &
-                              (y[i] <= high.y()) & (z[i] >= low.z()) & (z[i] <= high.z());
-          visit(i, distance, inside & (cosine > cos_normal_gate_));
-        }
-      });
-}
-
-std::vector<int> SampleAssigner::inCloudOrder(const std::vector<int>& labels) const {
-  std::vector<int> result(labels.size());
-  for (std::size_t row = 0; row < labels.size(); ++row) {
-    result[blocks_.order()[row]] = labels[row];
-  }
-  return result;
-}
-
-std::vector<int> SampleAssigner::assign(const std::vector<LocalPlane>& planes) const {
-  std::vector<int> labels(static_cast<std::size_t>(gates_.size()), -1);
-  std::vector<float> nearest(gates_.data(), gates_.data() + gates_.size());
-  for (std::size_t p = 0; p < planes.size(); ++p) {
-    const int plane = static_cast<int>(p);
-    forEachCandidate(planes[p], [&](std::size_t i, float distance, bool parallel) {
-      const bool nearer = parallel & (distance < nearest[i]);
-      nearest[i] = nearer ? distance : nearest[i];
-      labels[i] = nearer ? plane : labels[i];
-    });
-  }
-  return inCloudOrder(labels);
-}
-
-std::vector<int> SampleAssigner::assignToFirst(const std::vector<LocalPlane>& planes) const {
-  std::vector<int> labels(static_cast<std::size_t>(gates_.size()), -1);
-  const float* gates = gates_.data();
-  for (std::size_t p = planes.size(); p-- > 0;) {
-    const int plane = static_cast<int>(p);
-    forEachCandidate(planes[p], [&](std::size_t i, float distance, bool parallel) {
-      labels[i] = parallel & (distance < gates[i]) ? plane : labels[i];
-    });
-  }
-  return inCloudOrder(labels);
-}
-
-std::vector<PointMoments> SampleAssigner::moments(const std::vector<int>& labels,
-                                                  std::size_t planes) const {
-  std::vector<PointMoments> moments(planes);
-  for (std::size_t i = 0; i < labels.size(); ++i) {
-    if (labels[i] < 0) continue;
-    moments[static_cast<std::size_t>(labels[i])].add(cloud_.points[i].cast<double>(), weights_[i]);
-  }
-  return moments;
-}
-
 SupportPatch leastSupport(const OrientedCloud& cloud, const GraphParams& params) {
   return cloud.extents.empty() ? SupportPatch{params.min_area, params.min_width}
                                : SupportPatch{params.detail_min_area, params.detail_min_width};
@@ -207,25 +122,30 @@ SupportPatch largestPatch(const OrientedCloud& cloud, const Plane& plane,
   const Eigen::Matrix<double, 3, 2> tangents = tangentBasis(plane.normal());
   const Eigen::Vector3d origin = pointOf(cloud, samples.front());
   const double extent = meanExtent(cloud, samples);
-  const double cell = 2.0 * extent;
-  std::vector<Eigen::Vector2d> coordinates;
-  std::vector<Cell> cell_of, cells;
+  // Samples without an extent all lie at one point.
+  const double cells_per_metre = extent > 0.0 ? 0.5 / extent : 0.0;
+  const auto indexOf = [&](double x) {
+    return static_cast<std::int64_t>(std::floor(x * cells_per_metre));
+  };
+  std::vector<Place> places;
+  places.reserve(samples.size());
   for (const int i : samples) {
-    coordinates.emplace_back(tangents.transpose() * (pointOf(cloud, i) - origin));
-    // Samples without an extent all lie at one point.
-    const Eigen::Array2d index = cell > 0.0
-                                     ? Eigen::Array2d((coordinates.back().array() / cell).floor())
-                                     : Eigen::Array2d::Zero();
-    cell_of.push_back({static_cast<std::int64_t>(index[0]), static_cast<std::int64_t>(index[1])});
+    const Eigen::Vector3d step = pointOf(cloud, i) - origin;
+    const double x = tangents.col(0).dot(step), y = tangents.col(1).dot(step);
+    places.push_back({{indexOf(x), indexOf(y)}, x, y});
   }
-  cells = cell_of;
-  std::sort(cells.begin(), cells.end());
-  cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
+  std::sort(places.begin(), places.end(),
+            [](const Place& a, const Place& b) { return a.cell < b.cell; });
+  std::vector<Cell> cells;
+  for (const Place& place : places) {
+    if (cells.empty() || !(cells.back() == place.cell)) cells.push_back(place.cell);
+  }
   UnionFind sets = connect(cells);
   std::vector<Spread> spreads(cells.size());
-  for (std::size_t k = 0; k < samples.size(); ++k) {
-    const auto found = std::lower_bound(cells.begin(), cells.end(), cell_of[k]);
-    spreads[sets.root(static_cast<std::size_t>(found - cells.begin()))].add(coordinates[k]);
+  std::size_t cell = 0;
+  for (const Place& place : places) {
+    if (!(cells[cell] == place.cell)) ++cell;
+    spreads[sets.root(cell)].add(place.x, place.y);
   }
   const auto largest =
       std::max_element(spreads.begin(), spreads.end(),
