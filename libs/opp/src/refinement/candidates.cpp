@@ -99,7 +99,8 @@ Candidates CandidateSearch::find(const std::vector<ParallelGroup>& groups,
                                  const std::vector<PlaneFit>& fits, const RefinementParams& params,
                                  std::size_t stride) const {
   const auto samples = static_cast<std::size_t>(variances_.size());
-  std::vector<std::pair<std::uint32_t, Candidates::Entry>> found;  // sample and entry
+  std::vector<std::uint32_t> found;  // samples near a plane, one plane after another
+  std::vector<std::pair<Candidates::Entry, std::size_t>> planes;  // and where in `found` its end is
   std::vector<std::int32_t> near(samples);
   Candidates candidates;
   candidates.begin.assign(samples + 1, 0);
@@ -107,18 +108,26 @@ Candidates CandidateSearch::find(const std::vector<ParallelGroup>& groups,
     for (const std::size_t plane : groups[group]) {
       const Candidates::Entry entry{group, static_cast<std::uint32_t>(plane)};
       markNear(fits[plane], params, near, [&](std::size_t begin, std::size_t end) {
+        // Without a branch, which would be taken at random.
+        std::size_t count = found.size();
+        found.resize(count + (end - begin));
         for (std::size_t i = (begin + stride - 1) / stride * stride; i < end; i += stride) {
-          if (near[i] == 0) continue;
-          found.push_back({static_cast<std::uint32_t>(i), entry});
-          ++candidates.begin[i + 1];
+          found[count] = static_cast<std::uint32_t>(i);
+          count += static_cast<std::size_t>(near[i]);
+          candidates.begin[i + 1] += static_cast<std::uint32_t>(near[i]);
         }
+        found.resize(count);
       });
+      planes.emplace_back(entry, found.size());
     }
   }
   std::partial_sum(candidates.begin.begin(), candidates.begin.end(), candidates.begin.begin());
   candidates.entries.resize(found.size());
   std::vector<std::uint32_t> next(candidates.begin.begin(), candidates.begin.end() - 1);
-  for (const auto& [sample, entry] : found) candidates.entries[next[sample]++] = entry;
+  std::size_t at = 0;
+  for (const auto& [entry, end] : planes) {
+    for (; at < end; ++at) candidates.entries[next[found[at]]++] = entry;
+  }
   sortByContest(samples, stride, fits.size(), candidates);
   findRivals(fits.size(), candidates);
   return candidates;

@@ -29,6 +29,17 @@ struct TurnSums {
   Eigen::Vector2d mean_place = Eigen::Vector2d::Zero();
   double tilt_squares = 0.0;  ///< Σ |m|²
   double count = 0.0;
+
+  /// Number by number: vectors would be stored in parts and loaded whole, which stalls the loop.
+  void add(double x, double y, double tilt_x, double tilt_y) {
+    places(0, 0) += x * x, places(1, 0) += y * x, places(0, 1) += x * y, places(1, 1) += y * y;
+    crossed(0, 0) += tilt_x * x, crossed(1, 0) += tilt_y * x;
+    crossed(0, 1) += tilt_x * y, crossed(1, 1) += tilt_y * y;
+    mean_place[0] += x, mean_place[1] += y;
+    tilts[0] += tilt_x, tilts[1] += tilt_y;
+    tilt_squares += tilt_x * tilt_x + tilt_y * tilt_y;
+    count += 1.0;
+  }
 };
 
 bool turns(const TurnSums& sums, const RefinementParams& params) {
@@ -143,15 +154,10 @@ void markCurved(const std::vector<WeightedSample>& samples, const std::vector<in
     if (labels[i] < 0) continue;
     const auto k = static_cast<std::size_t>(labels[i]);
     const double sign = samples[i].normal.dot(fits[k].plane.normal()) < 0.0 ? -1.0 : 1.0;
-    const Eigen::Vector2d place =
-        tangents[k].transpose() * (samples[i].point - fits[k].moments.mean());
-    const Eigen::Vector2d tilt = sign * tangents[k].transpose() * samples[i].normal;
-    sums[k].places += place * place.transpose();
-    sums[k].crossed += tilt * place.transpose();
-    sums[k].mean_place += place;
-    sums[k].tilts += tilt;
-    sums[k].tilt_squares += tilt.squaredNorm();
-    sums[k].count += 1.0;
+    const Eigen::Vector3d step = samples[i].point - fits[k].moments.mean();
+    sums[k].add(tangents[k].col(0).dot(step), tangents[k].col(1).dot(step),
+                sign * tangents[k].col(0).dot(samples[i].normal),
+                sign * tangents[k].col(1).dot(samples[i].normal));
   }
   for (std::size_t k = 0; k < fits.size(); ++k) fits[k].curved = turns(sums[k], params);
 }
