@@ -3,10 +3,10 @@
 #include "opp/cloud/even_sampling.h"
 
 #include "cloud/cell_table.h"
+#include "cloud/seed_lists.h"
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <stdexcept>
 
 namespace opp {
@@ -40,9 +40,6 @@ std::size_t countCells(const std::vector<Eigen::Vector3f>& points, double edge, 
   return table.size();
 }
 
-/// Edge of a cell of the sampler over the spacing: few cells to look at, few samples in each.
-constexpr double kEdgeRatio = 2.5;
-
 /// Grows samples one entry at a time.
 class Sampler {
  public:
@@ -52,9 +49,7 @@ class Sampler {
         cos_merge_(static_cast<float>(std::cos(params.merge_angle))),
         gate_(params.gate),
         tilt_(std::tan(params.normal_error) * spacing),
-        table_(
-            extent.low, kEdgeRatio * spacing,
-            static_cast<std::size_t>(static_cast<double>(expected) / (kEdgeRatio * kEdgeRatio))) {
+        lists_(extent.low, spacing, expected) {
     seeds_.reserve(expected);
     sums_.reserve(expected);
   }
@@ -97,7 +92,7 @@ class Sampler {
   struct Seed {
     Eigen::Vector3f point;
     Eigen::Vector3f normal;
-    int next;  ///< in the same cell; −1: none
+    int next;  ///< in the same list; −1: none
   };
 
   /// Weighted sums over the entries of a sample.
@@ -111,23 +106,16 @@ class Sampler {
   /// The sample that an entry joins; −1: none.
   int nearest(const Eigen::Vector3f& point, const Eigen::Vector3f& normal, float sigma,
               float weight) const {
-    const Eigen::Vector3d reach = Eigen::Vector3d::Constant(spacing_);
-    const CellTable::Cell low = table_.cellOf(point.cast<double>() - reach);
-    const CellTable::Cell high = table_.cellOf(point.cast<double>() + reach);
     auto best_distance = static_cast<float>(spacing_ * spacing_);
     int best = -1;
-    CellTable::Cell cell;
-    for (cell.z() = low.z(); cell.z() <= high.z(); ++cell.z()) {
-      for (cell.y() = low.y(); cell.y() <= high.y(); ++cell.y()) {
-        for (cell.x() = low.x(); cell.x() <= high.x(); ++cell.x()) {
-          for (int i = table_.find(cell); i >= 0; i = seeds_[static_cast<std::size_t>(i)].next) {
-            const float distance = distanceAlong(i, point);
-            if (distance >= best_distance || !sameSurface(i, point, normal, sigma, weight))
-              continue;
-            best_distance = distance;
-            best = i;
-          }
-        }
+    const SeedLists::Heads heads = lists_.near(point);
+    for (int k = 0; k < heads.count; ++k) {
+      for (int i = heads.first[static_cast<std::size_t>(k)]; i >= 0;
+           i = seeds_[static_cast<std::size_t>(i)].next) {
+        const float distance = distanceAlong(i, point);
+        if (distance >= best_distance || !sameSurface(i, point, normal, sigma, weight)) continue;
+        best_distance = distance;
+        best = i;
       }
     }
     return best;
@@ -156,10 +144,7 @@ class Sampler {
 
   int insert(const Eigen::Vector3f& point, const Eigen::Vector3f& normal) {
     const int index = static_cast<int>(seeds_.size());
-    const CellTable::Cell cell = table_.cellOf(point.cast<double>());
-    const int next = table_.findOrInsert(cell, index);
-    if (next >= 0) table_.replace(cell, index);
-    seeds_.push_back({point, normal, next});
+    seeds_.push_back({point, normal, lists_.push(point, index)});
     sums_.emplace_back();
     return index;
   }
@@ -168,7 +153,7 @@ class Sampler {
   float cos_merge_;
   double gate_;
   double tilt_;
-  CellTable table_;
+  SeedLists lists_;
   std::vector<Seed> seeds_;
   std::vector<Sums> sums_;
 };
