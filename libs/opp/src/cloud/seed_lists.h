@@ -19,7 +19,7 @@ class SeedLists {
  public:
   /// Heads of the lists near a point, `count` of them.
   struct Heads {
-    std::array<int, 8> first;
+    std::array<int, 8> first{};
     int count = 0;
   };
 
@@ -36,7 +36,7 @@ class SeedLists {
   Heads near(const Eigen::Vector3f& point) const {
     const Eigen::Array3d place = placeOf(point);
     const Cell low = floorOf(place - 1.0 / kEdgeRatio), high = floorOf(place + 1.0 / kEdgeRatio);
-    const Cell step = (high - low).cast<std::uint64_t>();
+    const Cell step = high - low;
     Heads heads;
     // Along each axis a cube or two; without branches, which would be taken at random.
     for (unsigned corner = 0; corner < 8; ++corner) {

@@ -47,19 +47,24 @@ LocalVotes::LocalVotes(const VotingScene& scene)
       table(scene.params.theta_bins, scene.params.rho_bins, scene.radius),
       scene_(scene),
       kinds_(static_cast<std::size_t>(scene.params.partners)),
-      thetas_(static_cast<std::size_t>(scene.params.partners)) {}
+      thetas_(static_cast<std::size_t>(scene.params.partners)),
+      chosen_(static_cast<std::size_t>(scene.params.partners)) {}
 
 void LocalVotes::pairUp(std::uint32_t r) {
   drawPartners(scene_, r, cells_, partners);
   classify(partners, scene_.samples[r].normal, PairTest(scene_.params.normal_tolerance),
            static_cast<float>(scene_.radius * scene_.radius), kinds_.data());
   pairs = 0;
+  std::size_t found = 0;
   coplanar.size = 0;
   for (Eigen::Index k = 0; k < partners.size; ++k) {
     const std::int32_t kind = kinds_[static_cast<std::size_t>(k)];
     pairs += static_cast<std::size_t>(kind & kInReach);
-    if ((kind & kCoplanar) != 0) coplanar.add(partners, k);
+    // Without a branch, which would be taken at random.
+    chosen_[found] = k;
+    found += (kind & kCoplanar) != 0 ? 1 : 0;
   }
+  for (std::size_t c = 0; c < found; ++c) coplanar.add(partners, chosen_[c]);
 }
 
 void LocalVotes::castOrthogonal(const Eigen::Matrix<float, 3, 2>& tangents) {

@@ -34,8 +34,9 @@ class LocalVotes {
  private:
   const VotingScene& scene_;
   std::vector<NeighbourhoodGrid::Range> cells_;
-  std::vector<std::int32_t> kinds_;  ///< per partner
-  std::vector<float> thetas_;        ///< per partner
+  std::vector<std::int32_t> kinds_;   ///< per partner
+  std::vector<float> thetas_;         ///< per partner
+  std::vector<Eigen::Index> chosen_;  ///< scratch
 };
 
 }  // namespace opp

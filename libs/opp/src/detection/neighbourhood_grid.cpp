@@ -71,6 +71,10 @@ NeighbourhoodGrid::Index NeighbourhoodGrid::indexOf(const Eigen::Vector3f& x) co
   return {index(x.x()), index(x.y()), index(x.z())};
 }
 
+std::size_t NeighbourhoodGrid::markOf(std::uint64_t key) const {
+  return (key ^ (key >> 29)) & (marks_.size() - 1);
+}
+
 std::size_t NeighbourhoodGrid::slotOf(std::uint64_t key) const {
   const std::size_t mask = slots_.size() - 1;
   std::size_t slot = (key ^ (key >> 29)) & mask;
@@ -108,6 +112,10 @@ NeighbourhoodGrid::NeighbourhoodGrid(const std::vector<Eigen::Vector3f>& points,
     range = {begin, begin};
     begin += size;
   }
+  marks_.resize(kMarksPerSlot * slots_.size());
+  for (const Slot& slot : slots_) {
+    if (slot.cell >= 0) marks_[markOf(slot.key)] = 1;
+  }
   order_.resize(points.size());
   for (const std::uint32_t i : shuffledIndices(points.size(), seed)) {
     order_[cells_[cell_of[i]].end++] = i;
@@ -124,15 +132,31 @@ void NeighbourhoodGrid::cellsNear(const Eigen::Vector3f& center, double radius,
     const double distance = std::max({near - x, x - (near + cell_), 0.0});
     return distance * distance;
   };
-  for (std::int64_t i = low[0]; i <= high[0]; ++i) {
-    for (std::int64_t j = low[1]; j <= high[1]; ++j) {
-      const double gap_ij = gap(0, i) + gap(1, j);
-      if (gap_ij > radius * radius) continue;
-      std::uint64_t key = keyOf(Index{i, j, low[2]});
-      for (std::int64_t k = low[2]; k <= high[2]; ++k, key += kKeySteps[2]) {
-        const Slot& slot = slots_[slotOf(key)];
-        if (slot.cell < 0 || gap_ij + gap(2, k) > radius * radius) continue;
-        cells.push_back(cells_[static_cast<std::size_t>(slot.cell)]);
+  // Most cells are empty. Their marks are read without branches, which would be taken at random: a
+  // few cells in a row, whose gaps and numbers fit into arrays.
+  constexpr std::int64_t kRow = 8;
+  std::array<double, kRow> gaps{};
+  std::array<std::int64_t, kRow> marked{};
+  for (std::int64_t begin = low[2]; begin <= high[2]; begin += kRow) {
+    const std::int64_t row = std::min(kRow, high[2] + 1 - begin);
+    for (std::int64_t k = 0; k < row; ++k) gaps[static_cast<std::size_t>(k)] = gap(2, begin + k);
+    for (std::int64_t i = low[0]; i <= high[0]; ++i) {
+      for (std::int64_t j = low[1]; j <= high[1]; ++j) {
+        const double left = radius * radius - gap(0, i) - gap(1, j);
+        if (left < 0.0) continue;
+        const std::uint64_t first = keyOf(Index{i, j, begin});
+        const auto key = [&](std::int64_t k) {
+          return first + static_cast<std::uint64_t>(k) * kKeySteps[2];
+        };
+        std::size_t count = 0;
+        for (std::int64_t k = 0; k < row; ++k) {
+          marked[count] = k;
+          count += marks_[markOf(key(k))] & (gaps[static_cast<std::size_t>(k)] <= left ? 1U : 0U);
+        }
+        for (std::size_t m = 0; m < count; ++m) {
+          const Slot& slot = slots_[slotOf(key(marked[m]))];
+          if (slot.cell >= 0) cells.push_back(cells_[static_cast<std::size_t>(slot.cell)]);
+        }
       }
     }
   }

@@ -39,16 +39,20 @@ std::size_t OpenSamples::close(const std::vector<PlaneHypothesis>& planes) {
   const GatheredHypotheses gathered = gatherHypotheses(planes, angle_);
   for (std::size_t k = 0; k < gathered.leaders.size(); ++k) {
     const std::size_t leader = gathered.leaders[k];
-    const Eigen::AlignedBox3f& box = gathered.boxes[k];
+    const Eigen::Vector3f low = gathered.boxes[k].min(), high = gathered.boxes[k].max();
     const Eigen::Vector3f normal = planes[leader].plane.normal().cast<float>();
     const auto d = static_cast<float>(planes[leader].plane.d());
     const auto plane = static_cast<std::int32_t>(closed_.size());
     std::size_t left = 0;
     for (const std::uint32_t i : open_) {
       const VotingSample& sample = samples_[i];
-      const bool on_plane = (std::abs(normal.dot(sample.point) + d) < sample.gate) &
-                            (std::abs(normal.dot(sample.normal)) > cosine) &
-                            box.contains(sample.point);
+      const float x = sample.point.x(), y = sample.point.y(), z = sample.point.z();
+      const float height = normal.x() * x + normal.y() * y + normal.z() * z + d;
+      const bool inside = (x >= low.x()) & (x <= high.x()) & (y >= low.y()) & (y <= high.y()) &
+                          (z >= low.z()) & (z <= high.z());
+      // Without branches, which would be taken at random.
+      const bool on_plane = (std::abs(height) < sample.gate) &
+                            (std::abs(normal.dot(sample.normal)) > cosine) & inside;
       is_open_[i] = on_plane ? 0 : 1;
       closer_[i] = plane;
       open_[left] = i;

@@ -37,11 +37,14 @@ class NeighbourhoodGrid {
   };
   Index indexOf(const Eigen::Vector3f& x) const;
   std::size_t slotOf(std::uint64_t key) const;
+  std::size_t markOf(std::uint64_t key) const;
   /// Number of the cell, which is made if it is not there yet.
   std::int32_t cellAt(std::uint64_t key);
 
   double cell_, cells_per_metre_;
-  std::vector<Slot> slots_;  // open addressing, a power of two
+  static constexpr std::size_t kMarksPerSlot = 2;
+  std::vector<Slot> slots_;          // open addressing, a power of two
+  std::vector<std::uint8_t> marks_;  // by hash: 1 where there may be a cell
   std::vector<Range> cells_;
   std::vector<std::uint32_t> order_;
 };
