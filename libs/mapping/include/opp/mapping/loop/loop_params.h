@@ -23,7 +23,7 @@ struct LoopParams {
   double connected_ratio = 0.3;
   double search_distance = 2.0;
   double drift_gate = 4.0;
-  int max_candidates = 3;
+  int max_candidates = 10;
   int place_keyframes = 6;
   double min_overlap = 0.5;
   int confirmations = 2;
