@@ -24,6 +24,7 @@ void Tracker::start(const StampedPose& pose,
   motion_.start(pose, odom_from_body);
   follows_ = true;
   surprised_ = false;
+  lost_.clear();
 }
 
 std::optional<PosePrior> Tracker::expected(
@@ -84,10 +85,19 @@ TrackResult Tracker::track(const ScanFeatures& scan,
     return result;
   }
   result = localize(scan, predicted, moved, newest);
+  if (result.localized() && deniedByLostScans(lost_, scan, result.match.map_from_body, params_))
+    result.outcome = TrackOutcome::kImplausible;
   const bool followed = std::exchange(follows_, result.localized());
   const bool lost = !result.localized() && result.outcome != TrackOutcome::kUnobserved;
   if (followed || !lost) surprised_ = lost && surprises(predicted, scan, newest);
-  if (lost) return result;
+  if (lost) {
+    // A new map is begun after so many; where none can be, memory must not grow.
+    if (lost_.size() == static_cast<std::size_t>(params_.loop.lost_scans))
+      lost_.erase(lost_.begin());
+    lost_.push_back({scan, predicted});
+    return result;
+  }
+  lost_.clear();
   // Between keyframes, motion ties what neither planes nor points do.
   result.match.point_information += motion_.informationSinceAnchor(scan.timestamp, odom_from_body);
   motion_.update({scan.timestamp, result.match.map_from_body}, odom_from_body,

@@ -4,6 +4,7 @@
 
 #include "opp/mapping/core/map_state.h"
 #include "opp/mapping/core/mapper_params.h"
+#include "opp/mapping/frontend/lost_scans.h"
 #include "opp/mapping/frontend/motion_model.h"
 #include "opp/mapping/registration/local_map.h"
 #include "opp/mapping/registration/match_scan.h"
@@ -22,7 +23,8 @@ enum class TrackOutcome {
   kLittleOverlap,  ///< too small a share of the scan agrees with the map
   kContradicted,   ///< what agrees is outweighed by what stands where the other looked through
   /// The body cannot have moved so since the last scan; or this is far from where motion puts it,
-  /// and the map denied that before, or agrees better with it now.
+  /// and the map denied that before, or agrees clearly better with it now; or the scans that were
+  /// lost on the way say so.
   kImplausible,
   kUnobserved,  ///< a direction has not been seen for so long that no prediction can be trusted
   kForgotten,   ///< lost for so long that the body may have turned around
@@ -101,8 +103,9 @@ class Tracker {
   MapperParams params_;
   MotionModel motion_;
   std::optional<LocalMap> local_map_;
-  bool follows_ = true;     ///< the last scan was localized
-  bool surprised_ = false;  ///< the scan after that contradicted the map where motion put it
+  std::vector<LostScan> lost_;  ///< newest of those since the last localized one
+  bool follows_ = true;         ///< the last scan was localized
+  bool surprised_ = false;      ///< the scan after that contradicted the map where motion put it
 };
 
 /// Of several poses that explain a scan alike, the one that motion speaks for by odds of 100 to 1

@@ -1,0 +1,54 @@
+// SPDX-FileCopyrightText: 2026 The opp-mapping authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "opp/mapping/frontend/lost_scans.h"
+
+#include "opp/mapping/registration/local_map.h"
+
+#include "registration/observability.h"
+
+#include <cmath>
+
+namespace opp::mapping {
+namespace {
+
+/// What typical speeds tell of the pose after `seconds` at rest.
+Matrix6d informationAfter(double seconds, const FrontendParams& params) {
+  Vector6d deviation;
+  deviation << Eigen::Vector3d::Constant(params.angular_speed * seconds),
+      Eigen::Vector3d::Constant(params.speed * seconds);
+  return deviation.cwiseAbs2().cwiseInverse().asDiagonal();
+}
+
+bool isKnown(const Matrix6d& covariance, const FrontendParams& params) {
+  return largestVariance(covariance.topLeftCorner<3, 3>()) <=
+             params.max_drift_rotation * params.max_drift_rotation &&
+         largestVariance(covariance.bottomRightCorner<3, 3>()) <=
+             params.max_drift_translation * params.max_drift_translation;
+}
+
+}  // namespace
+
+bool deniedByLostScans(const std::vector<LostScan>& lost, const ScanFeatures& found,
+                       const Eigen::Isometry3d& map_from_body, const MapperParams& params) {
+  if (lost.empty()) return false;
+  LocalMap seen(found.cloud_in_body.spacing, params.primitives.sensor, params.registration);
+  seen.insert(found, Eigen::Isometry3d::Identity(),
+              std::vector<int>(found.primitives_in_body.planes.size(), -1));
+  PosePrior near;
+  double timestamp = found.timestamp;
+  for (auto before = lost.rbegin(); before != lost.rend(); ++before) {
+    const double seconds = std::abs(timestamp - before->scan.timestamp);
+    near.information = informationAfter(seconds, params.frontend);
+    const MatchResult match = matchScan(before->scan, seen, near, params.registration);
+    if (match.overlap < params.frontend.doubtful_overlap ||
+        !isKnown(match.covariance, params.frontend))
+      return false;
+    if (before->predicted.squaredSigmas(map_from_body * match.map_from_body) > kPossible)
+      return true;
+    near.map_from_body = match.map_from_body;
+    timestamp = before->scan.timestamp;
+  }
+  return false;
+}
+
+}  // namespace opp::mapping
