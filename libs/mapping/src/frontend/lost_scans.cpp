@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "opp/mapping/frontend/lost_scans.h"
 
+#include "opp/mapping/frontend/motion_model.h"
 #include "opp/mapping/registration/local_map.h"
 
 #include "registration/observability.h"
@@ -10,14 +11,6 @@
 
 namespace opp::mapping {
 namespace {
-
-/// What typical speeds tell of the pose after `seconds` at rest.
-Matrix6d informationAfter(double seconds, const FrontendParams& params) {
-  Vector6d deviation;
-  deviation << Eigen::Vector3d::Constant(params.angular_speed * seconds),
-      Eigen::Vector3d::Constant(params.speed * seconds);
-  return deviation.cwiseAbs2().cwiseInverse().asDiagonal();
-}
 
 bool isKnown(const Matrix6d& covariance, const FrontendParams& params) {
   return largestVariance(covariance.topLeftCorner<3, 3>()) <=
@@ -38,7 +31,7 @@ bool deniedByLostScans(const std::vector<LostScan>& lost, const ScanFeatures& fo
   double timestamp = found.timestamp;
   for (auto before = lost.rbegin(); before != lost.rend(); ++before) {
     const double seconds = std::abs(timestamp - before->scan.timestamp);
-    near.information = informationAfter(seconds, params.frontend);
+    near.information = typicalMotion(seconds, params.frontend).cwiseInverse().asDiagonal();
     const MatchResult match = matchScan(before->scan, seen, near, params.registration);
     if (match.overlap < params.frontend.doubtful_overlap ||
         !isKnown(match.covariance, params.frontend))

@@ -25,6 +25,11 @@ constexpr double kAccelerationTime = 0.1;
 
 }  // namespace
 
+Vector6d typicalMotion(double seconds, const FrontendParams& params) {
+  return (perKind(params.angular_speed, params.speed) * std::max(seconds, kMinTimeStep))
+      .cwiseAbs2();
+}
+
 void MotionModel::start(const StampedPose& pose,
                         const std::optional<Eigen::Isometry3d>& odom_from_body) {
   started_ = true;
@@ -127,12 +132,11 @@ Vector6d MotionModel::agility() const {
 
 PosePrior MotionModel::lastPose(double timestamp) const {
   if (!started_) return {};
-  const double step = std::max(timestamp - timestamp_, kMinTimeStep);
   PosePrior prior;
   prior.map_from_body = last_.map_from_body;
   // What was open at the last pose is no better known now.
   Matrix6d covariance = last_.covariance.topLeftCorner<6, 6>();
-  covariance.diagonal() += (perKind(params_.angular_speed, params_.speed) * step).cwiseAbs2();
+  covariance.diagonal() += typicalMotion(timestamp - timestamp_, params_);
   prior.information = inverse(covariance);
   return prior;
 }

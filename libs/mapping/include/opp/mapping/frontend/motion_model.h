@@ -10,6 +10,10 @@
 
 namespace opp::mapping {
 
+/// How far a body gets from a pose at its typical speeds in `seconds`: variances of (ω, v), see
+/// `retract` [rad², m²]. Positive also for stamps that are equal or run backwards.
+Vector6d typicalMotion(double seconds, const FrontendParams& params);
+
 /// Predicts the next pose: by the rawlog's odometry where there is one, else by constant velocity.
 ///
 /// A Kalman filter of pose and velocity in (ω, v), see `retract`: a direction that scans do not fix
