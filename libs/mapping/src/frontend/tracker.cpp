@@ -119,7 +119,7 @@ TrackResult Tracker::localize(const ScanFeatures& scan, const PosePrior& predict
     const bool expected = &prior == &predicted;
     if ((!expected || (!follows_ && outcome == TrackOutcome::kLocalized)) && !convincing(match))
       outcome = TrackOutcome::kLittleOverlap;
-    if (slidAway(match.map_from_body, predicted, scan, newest) ||
+    if (slidAway(match, predicted, scan, newest) ||
         (surprised_ && !resumes(match.map_from_body, predicted, scan, newest)))
       outcome = TrackOutcome::kImplausible;
     const bool localized = outcome == TrackOutcome::kLocalized;
@@ -163,7 +163,8 @@ TrackOutcome Tracker::outcomeOf(const MatchResult& match, const ScanFeatures& sc
 
 bool Tracker::contradicts(const Eigen::Isometry3d& map_from_body, const ScanFeatures& scan,
                           const Keyframe& newest) const {
-  return verified(map_from_body, scan, newest, params_).conflict() > params_.frontend.max_conflict;
+  return verified(map_from_body, scan, newest, params_).conflict() >
+         params_.global_alignment.max_conflict;
 }
 
 bool Tracker::surprises(const PosePrior& predicted, const ScanFeatures& scan,
@@ -174,13 +175,13 @@ bool Tracker::surprises(const PosePrior& predicted, const ScanFeatures& scan,
 }
 
 /// Little structure beside a bare wall can lead registration off along the wall. What motion calls
-/// impossible must at least agree with the map better than what motion says.
-bool Tracker::slidAway(const Eigen::Isometry3d& map_from_body, const PosePrior& predicted,
+/// impossible must explain most of the scan, and no worse than what motion says.
+bool Tracker::slidAway(const MatchResult& match, const PosePrior& predicted,
                        const ScanFeatures& scan, const Keyframe& newest) const {
-  return predicted.squaredSigmas(map_from_body) > kPossible &&
-         clarity(verified(map_from_body, scan, newest, params_),
-                 verified(predicted.map_from_body, scan, newest, params_)) <
-             -params_.global_alignment.min_slide_clarity;
+  if (predicted.squaredSigmas(match.map_from_body) <= kPossible) return false;
+  return !convincing(match) || clarity(verified(match.map_from_body, scan, newest, params_),
+                                       verified(predicted.map_from_body, scan, newest, params_)) <
+                                   -params_.global_alignment.min_slide_clarity;
 }
 
 /// The body may have been carried off: that one scan resembles the map at another pose is no proof,

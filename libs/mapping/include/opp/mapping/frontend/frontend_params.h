@@ -21,7 +21,6 @@ struct FrontendParams {
   double odometry_noise_rotation = degToRad(0.2);
   double min_overlap = 0.3;
   double doubtful_overlap = 0.6;
-  double max_conflict = 0.2;
   double max_jump = 6.0;
   double max_drift_translation = 0.15;
   double max_drift_rotation = degToRad(3.0);
@@ -50,9 +49,6 @@ struct FrontendParams {
     f(p.doubtful_overlap,
       Field{"doubtful_overlap", "", 0.0, 1.0,
             "if a smaller share agrees, the last pose is tried beside the prediction"});
-    f(p.max_conflict,
-      Field{"max_conflict", "", 0.0, 1.0,
-            "and lost if so much of what speaks stands where scan or map looked through"});
     f(p.max_jump,
       Field{"max_jump", "", 1.0, 1e6,
             "and lost if it moved since the last scan by so many times the typical speeds"});

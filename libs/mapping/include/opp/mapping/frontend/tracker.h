@@ -91,10 +91,10 @@ class Tracker {
   /// Whether a pose that was well predicted contradicts the scan: the body was moved.
   bool surprises(const PosePrior& predicted, const ScanFeatures& scan,
                  const Keyframe& newest) const;
-  /// Whether registration left a likely pose for an impossible one that explains the scan clearly
-  /// worse: alike says nothing, as the two may be millimetres apart.
-  bool slidAway(const Eigen::Isometry3d& map_from_body, const PosePrior& predicted,
-                const ScanFeatures& scan, const Keyframe& newest) const;
+  /// Whether registration left a likely pose for an impossible one that explains little of the
+  /// scan, or clearly less: alike says nothing, as the two may be millimetres apart.
+  bool slidAway(const MatchResult& match, const PosePrior& predicted, const ScanFeatures& scan,
+                const Keyframe& newest) const;
   /// Whether a body that surprised before is back on its way.
   bool resumes(const Eigen::Isometry3d& map_from_body, const PosePrior& predicted,
                const ScanFeatures& scan, const Keyframe& newest) const;
