@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "opp/mapping/loop/claim_pool.h"
 
+#include "opp/mapping/core/se3.h"
+
 #include "support/random.h"
 
 #include <gtest/gtest.h>
@@ -12,6 +14,7 @@ namespace {
 PlaceClaim claimOf(int keyframe_b, const Eigen::Isometry3d& a_from_b) {
   PlaceClaim claim;
   claim.keyframe_b = keyframe_b;
+  claim.claimant = {0, static_cast<std::size_t>(keyframe_b)};
   claim.map_a_from_map_b = a_from_b;
   claim.place_in_map_b = Eigen::Vector3d(5.0, 0.0, 0.0);
   return claim;
@@ -47,6 +50,44 @@ TEST(ClaimPool, IsSilentWhereKeyframesContradictEachOther) {
   EXPECT_TRUE(pool.agreed().empty()) << "three against two is not twice as many";
   pool.add(claimOf(4, pose));
   EXPECT_EQ(pool.agreed().size(), 4U);
+}
+
+TEST(ClaimPool, ErrorsThatDoNotAgreeAreNoRivals) {
+  test::Random random(2);
+  ClaimPool pool{LoopParams()};
+  const Eigen::Isometry3d pose = random.pose(3.0);
+  for (int keyframe = 0; keyframe < 10; ++keyframe) pool.add(claimOf(keyframe, random.pose(3.0)));
+  EXPECT_TRUE(pool.agreed().empty());
+  pool.add(claimOf(10, pose));
+  pool.add(claimOf(11, pose));
+  EXPECT_EQ(pool.agreed().size(), 2U);
+}
+
+TEST(PlaceClaim, SeenFromOtherIsTheSameMeasurement) {
+  test::Random random(3);
+  for (int trial = 0; trial < 50; ++trial) {
+    PlaceClaim claim = claimOf(1, random.pose(3.0));
+    claim.keyframe_a_from_b = random.pose(3.0);
+    Matrix6d root;
+    Vector6d step;
+    for (int i = 0; i < 6; ++i) {
+      step[i] = 1e-6 * random.uniform(-1.0, 1.0);
+      for (int j = 0; j < 6; ++j) root(i, j) = random.uniform(-1.0, 1.0);
+    }
+    claim.information = root * root.transpose();
+    const PlaceClaim other = seenFromOther(claim);
+    // A pose that is a little off costs as much from either side.
+    const Eigen::Isometry3d off = retract(claim.keyframe_a_from_b, step);
+    const Vector6d step_of_other = difference(other.keyframe_a_from_b, off.inverse());
+    const double cost = step.dot(claim.information * step);
+    EXPECT_NEAR(step_of_other.dot(other.information * step_of_other) / cost, 1.0, 1e-4);
+    const PlaceClaim back = seenFromOther(other);
+    EXPECT_LT((back.information - claim.information).norm(), 1e-9 * claim.information.norm());
+    EXPECT_TRUE(back.keyframe_a_from_b.isApprox(claim.keyframe_a_from_b, 1e-12));
+    EXPECT_TRUE(back.map_a_from_map_b.isApprox(claim.map_a_from_map_b, 1e-12));
+    EXPECT_TRUE(back.place_in_map_b.isApprox(claim.place_in_map_b, 1e-12));
+    EXPECT_EQ(back.keyframe_b, 1);
+  }
 }
 
 TEST(ClaimPool, ComparesPosesWhereTheClaimWasMade) {

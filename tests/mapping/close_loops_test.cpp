@@ -36,10 +36,10 @@ void addKeyframe(std::uint64_t room, int step, const Eigen::Isometry3d& believed
   match.map_from_body = believed;
   match.point_information = Matrix6d::Identity() / variance;
   const Eigen::Isometry3d truth = poseAt(step);
-  const int id =
-      insertKeyframe(test::trueFeatures(test::sampleScene(
-                         test::furnishedRoom(room), truth.translation(), truth.inverse(), options)),
-                     match, SensorModel(), map);
+  ScanFeatures scan = test::trueFeatures(
+      test::sampleScene(test::furnishedRoom(room), truth.translation(), truth.inverse(), options));
+  scan.scan_index = static_cast<std::size_t>(step);
+  const int id = insertKeyframe(std::move(scan), match, SensorModel(), map);
   if (id > 0) map.links.push_back({id - 1, id, variance});
 }
 
@@ -105,9 +105,10 @@ TEST(LoopCloser, IsNotTurnedAroundBySymmetry) {
     match.map_from_body = k < 2 ? truth : retract(Eigen::Isometry3d::Identity(), turned) * truth;
     match.point_information = 1e4 * Matrix6d::Identity();
     const auto room = test::roomSides({-2.0, -1.5, 0.0}, {2.0, 1.5, 2.5});
-    const int id = insertKeyframe(
-        test::trueFeatures(test::sampleScene(room, truth.translation(), truth.inverse(), options)),
-        match, SensorModel(), map);
+    ScanFeatures scan =
+        test::trueFeatures(test::sampleScene(room, truth.translation(), truth.inverse(), options));
+    scan.scan_index = static_cast<std::size_t>(k);
+    const int id = insertKeyframe(std::move(scan), match, SensorModel(), map);
     if (id > 0) map.links.push_back({id - 1, id, id == 2 ? 0.04 : 1e-6});
     closed = closed || closer.close(map);
   }

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "opp/mapping/loop/split_map.h"
 
+#include "opp/mapping/loop/tied_sets.h"
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -49,17 +51,22 @@ MapState row(int keyframes, const std::vector<int>& loose, int direction) {
   return map;
 }
 
+std::vector<MapState> split(MapState&& map) {
+  const std::vector<int> sets = tiedSets(map, kLimit);
+  return splitMap(std::move(map), sets);
+}
+
 TEST(SplitMap, LeavesAWellTiedMapAsItIs) {
-  const std::vector<MapState> parts = splitMap(row(5, {}, 0), kLimit);
+  const std::vector<MapState> parts = split(row(5, {}, 0));
   ASSERT_EQ(parts.size(), 1U);
   EXPECT_EQ(parts[0].keyframes.size(), 5U);
   EXPECT_EQ(parts[0].loop_closures, 3U);
-  EXPECT_TRUE(splitMap(MapState(), kLimit).empty());
+  EXPECT_TRUE(split(MapState()).empty());
 }
 
 TEST(SplitMap, CutsWhereADirectionIsOpen) {
   for (int direction = 0; direction < 6; ++direction) {
-    const std::vector<MapState> parts = splitMap(row(5, {1}, direction), kLimit);
+    const std::vector<MapState> parts = split(row(5, {1}, direction));
     ASSERT_EQ(parts.size(), 2U) << "direction " << direction;
     EXPECT_EQ(parts[0].keyframes.size(), 2U);
     const MapState& second = parts[1];
@@ -96,7 +103,7 @@ TEST(SplitMap, TwoLooseTiesHoldIfTheyLeaveDifferentDirectionsOpen) {
       back.translation().x() = -4.0;
       map.factors.relative_poses.push_back({4, 0, back, informationWithout(second)});
       const std::size_t expected = first == second ? 2 : 1;
-      EXPECT_EQ(splitMap(std::move(map), kLimit).size(), expected) << first << " " << second;
+      EXPECT_EQ(split(std::move(map)).size(), expected) << first << " " << second;
     }
   }
 }
@@ -108,7 +115,7 @@ TEST(SplitMap, ATurnLeftOpenIsFixedByTwoPointsFarApart) {
   Eigen::Isometry3d back = Eigen::Isometry3d::Identity();
   back.translation().x() = -4.0;
   map.factors.relative_poses.push_back({4, 0, back, informationWithout(2)});
-  EXPECT_EQ(splitMap(std::move(map), kLimit).size(), 1U);
+  EXPECT_EQ(split(std::move(map)).size(), 1U);
 }
 
 }  // namespace

@@ -4,8 +4,42 @@
 
 #include <algorithm>
 #include <set>
+#include <utility>
 
 namespace opp::mapping {
+namespace {
+
+/// (ω, v) of the inverse of a pose whose (ω, v) is given, see `retract`.
+Matrix6d inverseJacobian(const Eigen::Isometry3d& pose) {
+  const Eigen::Vector3d t = pose.translation();
+  Eigen::Matrix3d cross;
+  cross << 0.0, -t.z(), t.y(),  //
+      t.z(), 0.0, -t.x(),       //
+      -t.y(), t.x(), 0.0;
+  const Eigen::Matrix3d turned = -pose.linear().transpose();
+  Matrix6d jacobian = Matrix6d::Zero();
+  jacobian << turned, Eigen::Matrix3d::Zero(), turned * cross, turned;
+  return jacobian;
+}
+
+}  // namespace
+
+PlaceClaim seenFromOther(const PlaceClaim& claim) {
+  PlaceClaim result = claim;
+  std::swap(result.keyframe_a, result.keyframe_b);
+  result.keyframe_a_from_b = claim.keyframe_a_from_b.inverse();
+  const Matrix6d back = inverseJacobian(result.keyframe_a_from_b);
+  result.information = back.transpose() * claim.information * back;
+  result.map_a_from_map_b = claim.map_a_from_map_b.inverse();
+  result.place_in_map_b = claim.map_a_from_map_b * claim.place_in_map_b;
+  return result;
+}
+
+std::size_t claimantsOf(const std::vector<PlaceClaim>& claims) {
+  std::set<ScanId> claimants;
+  for (const PlaceClaim& c : claims) claimants.insert(c.claimant);
+  return claimants.size();
+}
 
 bool ClaimPool::agree(const PlaceClaim& x, const PlaceClaim& y) const {
   if (rotationAngle(x.map_a_from_map_b.inverse() * y.map_a_from_map_b) > params_.agree_rotation)
@@ -19,35 +53,27 @@ bool ClaimPool::agree(const PlaceClaim& x, const PlaceClaim& y) const {
 }
 
 std::vector<PlaceClaim> ClaimPool::agreed() const {
-  std::vector<PlaceClaim> best;
-  std::size_t most = 0;
-  const PlaceClaim* centre = nullptr;
-  const auto keyframes = [&](const std::vector<PlaceClaim>& claims) {
-    std::set<int> ids;
-    std::size_t certain = 0;
-    for (const PlaceClaim& c : claims) {
-      ids.insert(c.keyframe_b);
-      if (c.clarity >= params_.certain_clarity)
-        certain = static_cast<std::size_t>(params_.confirmations);
-    }
-    return std::max(ids.size(), certain);
-  };
-  for (const PlaceClaim& claim : claims_) {
-    std::vector<PlaceClaim> group;
-    std::copy_if(claims_.begin(), claims_.end(), std::back_inserter(group),
-                 [&](const PlaceClaim& other) { return agree(claim, other); });
-    if (keyframes(group) <= most) continue;
-    most = keyframes(group);
-    best = std::move(group);
-    centre = &claim;
-  }
+  std::vector<PlaceClaim> best = largestGroup(claims_);
+  const std::size_t most = claimantsOf(best);
   if (most < static_cast<std::size_t>(params_.confirmations)) return {};
-  std::vector<PlaceClaim> rivals;
-  std::copy_if(claims_.begin(), claims_.end(), std::back_inserter(rivals),
-               [&](const PlaceClaim& other) { return !agree(*centre, other); });
-  if (static_cast<double>(most) < params_.rival_ratio * static_cast<double>(keyframes(rivals)))
-    return {};
+  std::vector<PlaceClaim> others;
+  std::copy_if(claims_.begin(), claims_.end(), std::back_inserter(others),
+               [&](const PlaceClaim& other) { return !agree(best.front(), other); });
+  const std::size_t rivals = claimantsOf(largestGroup(others));
+  if (static_cast<double>(most) < params_.rival_ratio * static_cast<double>(rivals)) return {};
   return best;
+}
+
+/// The claim that most keyframes agree with and these, in order of arrival but for the first.
+std::vector<PlaceClaim> ClaimPool::largestGroup(const std::vector<PlaceClaim>& claims) const {
+  std::vector<PlaceClaim> largest;
+  for (const PlaceClaim& claim : claims) {
+    std::vector<PlaceClaim> group{claim};
+    std::copy_if(claims.begin(), claims.end(), std::back_inserter(group),
+                 [&](const PlaceClaim& other) { return &other != &claim && agree(claim, other); });
+    if (claimantsOf(group) > claimantsOf(largest)) largest = std::move(group);
+  }
+  return largest;
 }
 
 }  // namespace opp::mapping

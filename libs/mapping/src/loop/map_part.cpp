@@ -9,25 +9,24 @@
 namespace opp::mapping {
 namespace {
 
-const LocalizedScan* scanOf(const MapState& map, int session, std::size_t scan_index) {
-  const auto found = std::find_if(map.scans.begin(), map.scans.end(), [&](const LocalizedScan& s) {
-    return s.session == session && s.scan_index == scan_index;
-  });
+const LocalizedScan* scanOf(const MapState& map, const ScanId& id) {
+  const auto found = std::find_if(map.scans.begin(), map.scans.end(),
+                                  [&](const LocalizedScan& s) { return s.id() == id; });
   return found == map.scans.end() ? nullptr : &*found;
 }
 
 /// Whether motion between the end of one part and the beginning of the other allows the pose.
 bool expectedBy(const ExpectedBeginning& beginning, const MapState& a, const MapState& b,
                 const Eigen::Isometry3d& a_from_b) {
-  const LocalizedScan* last = scanOf(a, beginning.session, beginning.last_scan);
-  const LocalizedScan* first = scanOf(b, beginning.session, beginning.first_scan);
+  const LocalizedScan* last = scanOf(a, beginning.last);
+  const LocalizedScan* first = scanOf(b, beginning.first);
   if (last == nullptr || first == nullptr) return true;
   const Eigen::Isometry3d last_from_first =
       poseOf(a, *last).inverse() * a_from_b * poseOf(b, *first);
   const Vector6d error = difference(beginning.last_from_first, last_from_first);
   if (error.dot(beginning.information * error) > kPossible) return false;
   // Rooms repeat: what resembles a place is rather the next of its kind if motion speaks for that.
-  const Matrix6d covariance = beginning.information.inverse();
+  const Matrix6d covariance = covarianceOf(beginning.information);
   const Eigen::Vector3d shift = error.tail<3>();
   return shift.dot(covariance.bottomRightCorner<3, 3>().ldlt().solve(shift)) <= kClearly;
 }
@@ -41,23 +40,31 @@ bool expectedBegin(const MapState& earlier, const MapPart& later,
                      });
 }
 
-/// Whether the body can have moved so far in the time between the parts.
+struct Stop {
+  ScanId scan;
+  double timestamp;
+  bool in_b;
+  Eigen::Vector3d position;  ///< in the frame of a
+};
+
+/// Whether the body can have moved so far in the time whenever it went from one part to the other.
 bool reachable(const MapState& a, const MapState& b, const Eigen::Isometry3d& a_from_b,
                const MapperParams& params) {
+  std::vector<Stop> stops;
+  for (const LocalizedScan& s : a.scans)
+    stops.push_back({s.id(), s.timestamp, false, poseOf(a, s).translation()});
+  for (const LocalizedScan& s : b.scans)
+    stops.push_back({s.id(), s.timestamp, true, a_from_b * poseOf(b, s).translation()});
+  std::sort(stops.begin(), stops.end(),
+            [](const Stop& x, const Stop& y) { return x.scan < y.scan; });
   constexpr double kSigmas = 3.0;
-  for (const LocalizedScan& first : b.scans) {
-    const LocalizedScan* last = nullptr;
-    for (const LocalizedScan& scan : a.scans) {
-      if (scan.session == first.session && scan.timestamp <= first.timestamp) last = &scan;
-    }
-    if (last == nullptr) continue;
-    const double seconds = first.timestamp - last->timestamp;
-    const Eigen::Vector3d was = poseOf(a, *last).translation();
-    const Eigen::Vector3d is = a_from_b * poseOf(b, first).translation();
-    return (is - was).norm() <=
-           params.loop.search_distance + kSigmas * params.frontend.speed * seconds;
-  }
-  return true;
+  return std::adjacent_find(stops.begin(), stops.end(), [&](const Stop& from, const Stop& to) {
+           const double reach =
+               params.loop.search_distance +
+               kSigmas * params.frontend.speed * std::abs(to.timestamp - from.timestamp);
+           return from.in_b != to.in_b && from.scan.first == to.scan.first &&
+                  (to.position - from.position).norm() > reach;
+         }) == stops.end();
 }
 
 }  // namespace
@@ -66,6 +73,17 @@ void PartHistory::merge(const PartHistory& other) {
   origins.insert(other.origins.begin(), other.origins.end());
   beginnings.insert(beginnings.end(), other.beginnings.begin(), other.beginnings.end());
   repeated.insert(other.repeated.begin(), other.repeated.end());
+}
+
+void PartHistory::expectTied(const MapState& map, const std::vector<int>& sets) {
+  for (const RelativePoseFactor& f : map.factors.relative_poses) {
+    const auto first = static_cast<std::size_t>(f.first),
+               second = static_cast<std::size_t>(f.second);
+    if (sets[first] == sets[second]) continue;
+    const ScanFeatures& from = map.keyframes[first].features;
+    const ScanFeatures& to = map.keyframes[second].features;
+    beginnings.push_back({from.id(), to.id(), f.first_from_second, f.information});
+  }
 }
 
 void MapPart::indexFrom(std::size_t first_keyframe) {
@@ -77,14 +95,13 @@ bool MapPart::seesRepeated(int keyframe, double reach) const {
   if (history.repeated.empty()) return false;
   const Eigen::Vector3d view = map.keyframes[static_cast<std::size_t>(keyframe)].viewCentre();
   return std::any_of(map.keyframes.begin(), map.keyframes.end(), [&](const Keyframe& other) {
-    return history.repeated.count({other.features.session, other.features.scan_index}) > 0 &&
+    return history.repeated.count(other.features.id()) > 0 &&
            (other.viewCentre() - view).norm() <= reach;
   });
 }
 
 void MapPart::markRepeated(int keyframe) {
-  const ScanFeatures& features = map.keyframes[static_cast<std::size_t>(keyframe)].features;
-  history.repeated.insert({features.session, features.scan_index});
+  history.repeated.insert(map.keyframes[static_cast<std::size_t>(keyframe)].features.id());
 }
 
 bool motionAllows(const MapPart& a, const MapPart& b, const Eigen::Isometry3d& a_from_b,

@@ -40,6 +40,38 @@ bool contradicts(const Place& place, const ScanFeatures& scan, const Keyframe& k
          judged.hypotheses.front().conflict > params.global_alignment.max_conflict;
 }
 
+/// Whether a scan fixes its pose at a place by itself.
+bool isFixed(double variance, const MapperParams& params) {
+  constexpr double kSigmas = 3.0;
+  return kSigmas * std::sqrt(variance) <= params.loop.agree_translation;
+}
+
+/// An aligned scan, registered from there. That is more precise, but the scan alone may look past
+/// the place and slide along what it shares with it: then the alignment stands, which has weighed
+/// all that is known.
+PlaceMatch refined(const MapState& map, int keyframe, const ScanFeatures& scan,
+                   const LocalMap& local, const GlobalAlignment& alignment,
+                   const MapperParams& params) {
+  // A start without weight: the alignment saw the same scan, so its information must not count
+  // twice.
+  PosePrior start;
+  start.map_from_body = keyframeOf(map, keyframe).map_from_body * alignment.target_from_source;
+  const MatchResult match = matchScan(scan, local, start, params.registration);
+  PlaceMatch result = describe(map, keyframe, match);
+  const Matrix6d information = alignment.covariance.inverse();
+  const Vector6d moved = difference(alignment.target_from_source, result.keyframe_from_body);
+  const double own_variance =
+      viewVariance(covarianceOf(match.information), keyframeOf(map, keyframe));
+  if (match.overlap < params.global_alignment.min_overlap || !isFixed(own_variance, params) ||
+      moved.dot(information * moved) > kPossible) {
+    result.keyframe_from_body = alignment.target_from_source;
+    result.information = information;
+    result.overlap = alignment.overlap;
+  }
+  result.variance = viewVariance(alignment.covariance, keyframeOf(map, keyframe));
+  return result;
+}
+
 }  // namespace
 
 double connectedVariance(const MapState& map, int keyframe, const MapperParams& params) {
@@ -68,25 +100,14 @@ std::optional<PlaceMatch> matchPlace(const MapState& map, int keyframe, const Sc
       PlaceMatch result = describe(map, keyframe, match);
       result.variance = viewVariance(covarianceOf(match.information), keyframeOf(map, keyframe));
       // What the scan leaves open is still where it was expected, which proves nothing.
-      constexpr double kSigmas = 3.0;
-      if (kSigmas * std::sqrt(result.variance) > params.loop.agree_translation) return std::nullopt;
+      if (!isFixed(result.variance, params)) return std::nullopt;
       return result;
     }
   }
   const GlobalAlignment alignment = alignGlobally(
       merged.input(), surroundings, params.primitives.sensor, params.global_alignment);
   if (alignment.outcome != AlignmentOutcome::kAligned) return std::nullopt;
-  // A start without weight: the alignment saw the same scan, so its information must not count
-  // twice.
-  PosePrior start;
-  start.map_from_body = keyframeOf(map, keyframe).map_from_body * alignment.target_from_source;
-  const MatchResult match = matchScan(scan, local, start, params.registration);
-  // The alignment has weighed all that is known; the scan alone may look past the place.
-  if (match.overlap < params.global_alignment.min_overlap) return std::nullopt;
-  PlaceMatch result = describe(map, keyframe, match);
-  result.clarity = alignment.clarity;
-  result.variance = viewVariance(alignment.covariance, keyframeOf(map, keyframe));
-  return result;
+  return refined(map, keyframe, scan, local, alignment, params);
 }
 
 PlaceClaim claimOf(const MapState& map_a, const PlaceMatch& match, const MapState& map_b,
@@ -98,10 +119,16 @@ PlaceClaim claimOf(const MapState& map_a, const PlaceMatch& match, const MapStat
   claim.keyframe_a_from_b = match.keyframe_from_body;
   claim.information = match.information;
   claim.variance = match.variance;
-  claim.map_a_from_map_b = keyframeOf(map_a, match.keyframe).map_from_body *
-                           match.keyframe_from_body * claimant.map_from_body.inverse();
-  claim.place_in_map_b = claimant.viewCentre();
+  claim.claimant = claimant.features.id();
+  relate(map_a, map_b, claim);
   return claim;
+}
+
+void relate(const MapState& map_a, const MapState& map_b, PlaceClaim& claim) {
+  const Keyframe& b = keyframeOf(map_b, claim.keyframe_b);
+  claim.map_a_from_map_b = keyframeOf(map_a, claim.keyframe_a).map_from_body *
+                           claim.keyframe_a_from_b * b.map_from_body.inverse();
+  claim.place_in_map_b = b.viewCentre();
 }
 
 }  // namespace opp::mapping

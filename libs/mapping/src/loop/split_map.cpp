@@ -2,8 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "opp/mapping/loop/split_map.h"
 
-#include "opp/mapping/loop/tied_sets.h"
-
 #include <algorithm>
 #include <utility>
 
@@ -120,19 +118,15 @@ MapState takeKeyframes(const Renumbering& keyframes, MapState& map) {
 
 }  // namespace
 
-std::vector<MapState> splitMap(MapState&& map, double max_variance) {
-  const std::vector<int> tied = tiedSets(map, max_variance);
+std::vector<MapState> splitMap(MapState&& map, const std::vector<int>& sets) {
   std::vector<MapState> parts;
-  std::vector<bool> taken(map.keyframes.size(), false);
-  for (Index first = 0; first < taken.size(); ++first) {
-    if (taken[first]) continue;
-    const Renumbering keyframes =
-        renumber(taken.size(), [&](Index k) { return tied[k] == tied[first]; });
-    for (Index k = 0; k < taken.size(); ++k) taken[k] = taken[k] || keyframes[k] >= 0;
-    if (first == 0 && std::all_of(taken.begin(), taken.end(), [](bool t) { return t; })) {
-      parts.push_back(std::move(map));
-      return parts;
-    }
+  const int count = sets.empty() ? 0 : 1 + *std::max_element(sets.begin(), sets.end());
+  if (count == 1) {
+    parts.push_back(std::move(map));
+    return parts;
+  }
+  for (int set = 0; set < count; ++set) {
+    const Renumbering keyframes = renumber(sets.size(), [&](Index k) { return sets[k] == set; });
     parts.push_back(takeKeyframes(keyframes, map));
   }
   const auto largest = std::max_element(

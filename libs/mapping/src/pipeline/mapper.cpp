@@ -7,8 +7,10 @@
 #include "opp/mapping/frontend/insert_keyframe.h"
 #include "opp/mapping/frontend/merge_landmarks.h"
 #include "opp/mapping/loop/close_loose_ties.h"
+#include "opp/mapping/loop/join_parts.h"
 #include "opp/mapping/loop/match_place.h"
 #include "opp/mapping/loop/split_map.h"
+#include "opp/mapping/loop/tied_sets.h"
 
 #include "registration/observability.h"
 
@@ -35,7 +37,7 @@ bool canFoundMap(const OrientedCloud& cloud, double min_spread) {
 }  // namespace
 
 Mapper::Mapper(const MapperParams& params)
-    : params_(params), tracker_(params), loop_closer_(params), joiner_(params) {}
+    : params_(params), tracker_(params), loop_closer_(params) {}
 
 const MapState& Mapper::map() const { return parts_.empty() ? empty_ : parts_.front().map; }
 
@@ -90,8 +92,7 @@ std::optional<ExpectedBeginning> Mapper::expectedBeginning(
   const LocalizedScan& last = map.scans.back();
   const Eigen::Isometry3d last_from_map = poseOf(map, last).inverse();
   const Matrix6d map_from_last = turned(last_from_map.linear().transpose());
-  return ExpectedBeginning{last.session, last.scan_index, scan.scan_index,
-                           last_from_map * expected->map_from_body,
+  return ExpectedBeginning{last.id(), scan.id(), last_from_map * expected->map_from_body,
                            map_from_last.transpose() * expected->information * map_from_last};
 }
 
@@ -105,7 +106,6 @@ void Mapper::addKeyframe(ScanFeatures scan, const MatchResult& match) {
   linkKeyframe(local_, match.covariance, params_.loop, map);
   settleMap(map, std::max(1, id + 1 - params_.backend.window), params_);
   if (params_.loop.close_loops) loop_closer_.close(map);
-  if (joiner_.joinNewest(parts_)) loop_closer_.reset();
   const int newest = static_cast<int>(active().keyframes.size()) - 1;
   local_ = connectedViews(active(), newest, params_.frontend.local_keyframes, params_);
   tracker_.setLocalMap(localMapOf(active(), local_, params_));
@@ -125,7 +125,9 @@ void Mapper::splitParts() {
   std::vector<MapPart> parts;
   for (MapPart& part : parts_) {
     if (params_.loop.close_loops) closeLooseTies(max_drift * max_drift, params_, part.map);
-    std::vector<MapState> maps = splitMap(std::move(part.map), max_drift * max_drift);
+    const std::vector<int> sets = tiedSets(part.map, max_drift * max_drift);
+    part.history.expectTied(part.map, sets);
+    std::vector<MapState> maps = splitMap(std::move(part.map), sets);
     if (maps.size() == 1) {
       part.id = next_part_++;
       part.map = std::move(maps.front());
@@ -144,7 +146,7 @@ void Mapper::splitParts() {
 
 void Mapper::finish() {
   splitParts();
-  joiner_.joinAll(parts_);
+  joinParts(parts_, params_);
   for (MapPart& part : parts_) {
     settleMap(part.map, 1, params_);
     if (unifyPlanes(part.map, params_.primitives.sensor, params_.backend) > 0)

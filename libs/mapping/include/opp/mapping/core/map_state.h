@@ -18,6 +18,8 @@ struct LocalizedScan {
   std::size_t scan_index = 0;  ///< see ScanFeatures
   int keyframe = 0;
   Eigen::Isometry3d keyframe_from_body = Eigen::Isometry3d::Identity();
+
+  ScanId id() const { return {session, scan_index}; }
 };
 
 /// Two keyframes whose relative pose was measured, and how well: what tells whether a place that

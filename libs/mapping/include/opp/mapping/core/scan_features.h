@@ -7,8 +7,12 @@
 #include "opp/primitives/primitives.h"
 
 #include <cstddef>
+#include <utility>
 
 namespace opp::mapping {
+
+/// Session and ScanFeatures::scan_index of a scan: which it is of all of a run.
+using ScanId = std::pair<int, std::size_t>;
 
 /// What mapping keeps of one scan: samples and primitives; raw points are gone.
 struct ScanFeatures {
@@ -17,6 +21,8 @@ struct ScanFeatures {
   std::size_t scan_index = 0;  ///< position among the 3D observations of its rawlog
   OrientedCloud cloud_in_body;
   Primitives primitives_in_body;  ///< labels refer to the samples of cloud_in_body
+
+  ScanId id() const { return {session, scan_index}; }
 };
 
 /// Samples and primitives of one cloud, with detail (`ScanSurface`); time, session and index are

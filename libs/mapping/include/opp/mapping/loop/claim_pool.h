@@ -2,12 +2,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "opp/mapping/core/scan_features.h"
 #include "opp/mapping/core/se3.h"
 #include "opp/mapping/loop/loop_params.h"
 
 #include <Eigen/Geometry>
 
 #include <algorithm>
+#include <cstddef>
 #include <vector>
 
 namespace opp::mapping {
@@ -23,8 +25,14 @@ struct PlaceClaim {
   /// and after it drifted.
   Eigen::Isometry3d map_a_from_map_b = Eigen::Isometry3d::Identity();
   Eigen::Vector3d place_in_map_b = Eigen::Vector3d::Zero();  ///< where the claim was made [m]
-  double clarity = 0.0;                                      ///< see PlaceMatch
+  ScanId claimant;                                           ///< the keyframe that looked: a or b
 };
+
+/// The same claim with a and b swapped; the variance is taken to be that of a's view, too.
+PlaceClaim seenFromOther(const PlaceClaim& claim);
+
+/// How many different keyframes claim these.
+std::size_t claimantsOf(const std::vector<PlaceClaim>& claims);
 
 /// Claims about the same two frames, waiting for enough of them to agree. A single scan can fit at
 /// a wrong place; different keyframes that were tracked apart rarely fit at wrong places that
@@ -42,14 +50,14 @@ class ClaimPool {
   void clear() { claims_.clear(); }
   bool empty() const { return claims_.empty(); }
 
-  /// The claims of the pose that most different keyframes b agree on (one that is clearer than
-  /// `certain_clarity` counts as all that are needed), if these are at least
-  /// `confirmations` and `rival_ratio` times as many as claim anything else; else empty: not
-  /// proven, or ambiguous. In order of arrival. O(claims²).
+  /// The claims of the pose that most different keyframes agree on, if these are at least
+  /// `confirmations` and `rival_ratio` times as many as agree on any other; else empty: not proven,
+  /// or ambiguous. O(claims²).
   std::vector<PlaceClaim> agreed() const;
 
  private:
   bool agree(const PlaceClaim& x, const PlaceClaim& y) const;
+  std::vector<PlaceClaim> largestGroup(const std::vector<PlaceClaim>& claims) const;
   LoopParams params_;
   std::vector<PlaceClaim> claims_;
 };

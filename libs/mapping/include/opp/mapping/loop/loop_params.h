@@ -16,7 +16,6 @@ struct LoopParams {
   bool join_maps = true;
   int lost_scans = 5;
   int min_scans = 10;
-  int early_keyframes = 4;
   double min_normal_spread = 0.01;
   double step_sigma = 0.003;
   double drift_ratio = 0.01;
@@ -27,7 +26,6 @@ struct LoopParams {
   int place_keyframes = 6;
   double min_overlap = 0.5;
   int confirmations = 2;
-  double certain_clarity = 0.45;
   int memory = 15;
   double rival_ratio = 2.0;
   double agree_translation = 0.1;
@@ -42,9 +40,6 @@ struct LoopParams {
       Field{"lost_scans", "", 1, 1e6, "after so many lost scans in a row a new map is begun"});
     f(p.min_scans,
       Field{"min_scans", "", 1, 1e6, "maps of fewer scans that join no other are given up"});
-    f(p.early_keyframes,
-      Field{"early_keyframes", "", 1, 1e6,
-            "maps of fewer keyframes join others only in the end, when all is known"});
     f(p.min_normal_spread, Field{"min_normal_spread", "", 0.0, 0.33,
                                  "a map begins with a scan whose normals spread so much in every "
                                  "direction (least mean square of a component)"});
@@ -66,9 +61,6 @@ struct LoopParams {
                            "share of a scan that agrees with the place it is said to see"});
     f(p.confirmations, Field{"confirmations", "", 1, 100,
                              "different keyframes that must agree before a place is believed"});
-    f(p.certain_clarity,
-      Field{"certain_clarity", "", 0.0, 1.0,
-            "one keyframe is enough if no other pose comes this near (GlobalAlignment::clarity)"});
     f(p.memory, Field{"memory", "", 1, 1e6,
                       "keyframes after which an unconfirmed loop is forgotten (drift goes on)"});
     f(p.rival_ratio,

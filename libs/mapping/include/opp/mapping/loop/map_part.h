@@ -14,11 +14,11 @@
 namespace opp::mapping {
 
 /// What motion says of how a part begins: the body's pose at its first scan relative to that at the
-/// last scan before, of another part.
+/// last scan before, of another part. Or what tied two keyframes of a map before it was split
+/// between them, too loosely to hold it together.
 struct ExpectedBeginning {
-  int session = 0;
-  std::size_t last_scan = 0;   ///< ScanFeatures::scan_index
-  std::size_t first_scan = 0;  ///< the same
+  ScanId last;
+  ScanId first;
   Eigen::Isometry3d last_from_first = Eigen::Isometry3d::Identity();
   Matrix6d information = Matrix6d::Zero();  ///< of (ω, v) in the axes of the last body frame
 };
@@ -29,11 +29,13 @@ struct PartHistory {
   /// with more known than is now: they are not compared again.
   std::set<int> origins;
   std::vector<ExpectedBeginning> beginnings;
-  /// Session and scan index of keyframes whose place looks like another: it was recognized where it
-  /// cannot be. To recognize it proves nothing.
-  std::set<std::pair<int, std::size_t>> repeated;
+  /// Keyframes whose place looks like another: it was recognized where it cannot be. To recognize
+  /// it proves nothing.
+  std::set<ScanId> repeated;
 
   void merge(const PartHistory& other);
+  /// Keeps what ties the sets of keyframes (see `tiedSets`) that `map` is to be split into.
+  void expectTied(const MapState& map, const std::vector<int>& sets);
 };
 
 /// A map that grew on its own: a session, or what came after the body was lost.
@@ -54,9 +56,9 @@ struct MapPart {
   ConstellationIndex index;  ///< of all keyframes
 };
 
-/// Whether the body can have got from the one part to the other if `a_from_b` is right: within a
-/// session it moves at most at some times its typical speed, and begins a part where it was
-/// expected (`PartHistory::beginnings`). O(scans).
+/// Whether the body can have got from the one part to the other if `a_from_b` is right, each time
+/// that it did: within a session it moves at most at some times its typical speed, and begins a
+/// part where it was expected (`PartHistory::beginnings`). O(scans · (beginnings + log scans)).
 bool motionAllows(const MapPart& a, const MapPart& b, const Eigen::Isometry3d& a_from_b,
                   const MapperParams& params);
 

@@ -21,7 +21,6 @@ struct PlaceMatch {
   /// Of what is seen from there, by the scan (and its surroundings) alone, see `viewVariance` [m²].
   double variance = 0.0;
   double overlap = 0.0;  ///< see MatchResult
-  double clarity = 0.0;  ///< see GlobalAlignment; 0 where the expected pose was right
 };
 
 /// Largest variance [m²] of a keyframe's position relative to `keyframe` at which the surfaces of
@@ -48,5 +47,8 @@ std::optional<PlaceMatch> matchPlace(const MapState& map, int keyframe, const Sc
 /// same map before and after drift).
 PlaceClaim claimOf(const MapState& map_a, const PlaceMatch& match, const MapState& map_b,
                    int keyframe_b);
+
+/// Sets what follows from a claim for the frames of the two maps, as their keyframes stand now.
+void relate(const MapState& map_a, const MapState& map_b, PlaceClaim& claim);
 
 }  // namespace opp::mapping

@@ -7,7 +7,7 @@
 #include "opp/mapping/core/trajectory.h"
 #include "opp/mapping/frontend/tracker.h"
 #include "opp/mapping/loop/close_loops.h"
-#include "opp/mapping/loop/map_joiner.h"
+#include "opp/mapping/loop/map_part.h"
 
 #include <map>
 #include <optional>
@@ -26,8 +26,8 @@ struct FrameResult {
 /// Builds maps from scans in the order of time: prediction, registration against the local map,
 /// keyframes, landmarks, optimization, loop closure.
 ///
-/// A session and a body that is lost begin a new part, which joins an older one once several
-/// keyframes prove where they are (MapJoiner); what is never proven stays a map of its own. The
+/// A session and a body that is lost begin a new part. In the end, when all is known, parts join
+/// that are proven to show the same place (`joinParts`); the others stay maps of their own. The
 /// frame of a part is the body frame of its first scan, unless `setInitialPose` says otherwise; a
 /// part that was tied too loosely to another stays in that one's frame, about where it belongs.
 /// Deterministic.
@@ -68,7 +68,6 @@ class Mapper {
   Eigen::Isometry3d initial_pose_ = Eigen::Isometry3d::Identity();
   Tracker tracker_;
   LoopCloser loop_closer_;
-  MapJoiner joiner_;
   std::vector<MapPart> parts_;  ///< the last one is being built
   std::vector<int> local_;      ///< keyframes that scans are registered against
   MapState empty_;

@@ -1,8 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The opp-mapping authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "opp/mapping/loop/map_joiner.h"
+#include "opp/mapping/loop/join_parts.h"
 
 #include "opp/mapping/core/se3.h"
+#include "opp/mapping/loop/join_maps.h"
 #include "opp/mapping/loop/map_conflict.h"
 #include "opp/mapping/pipeline/mapper.h"
 
@@ -52,7 +53,7 @@ Mapper mapTwice(const test::Rectangles& first, const test::Rectangles& second, i
   return mapper;
 }
 
-TEST(MapJoiner, JoinsTwoSessionsOfOneRoomWithoutAGuess) {
+TEST(JoinParts, JoinsTwoSessionsOfOneRoomWithoutAGuess) {
   int joined = 0;
   for (std::uint64_t room = 1; room <= 5; ++room) {
     const Mapper mapper = mapTwice(test::furnishedRoom(room), test::furnishedRoom(room), 16);
@@ -68,39 +69,39 @@ TEST(MapJoiner, JoinsTwoSessionsOfOneRoomWithoutAGuess) {
   EXPECT_GE(joined, 4);
 }
 
-/// A map of the scans from `first` on, as part `id`.
-MapPart partOf(const test::Rectangles& scene, int id, int first) {
+/// A map of so many scans from `first` on, as part `id`.
+MapPart partOf(const test::Rectangles& scene, int id, int first, int scans = 16) {
   Mapper mapper{MapperParams()};
-  for (int step = first; step < first + 16; ++step) mapper.add(scanAt(scene, step), std::nullopt);
+  for (int step = first; step < first + scans; ++step)
+    mapper.add(scanAt(scene, step), std::nullopt);
   MapPart part(id, LoopParams());
   part.map = mapper.map();
-  for (const Keyframe& keyframe : part.map.keyframes)
-    part.index.add(keyframe.features.primitives_in_body);
+  part.indexFrom(0);
   return part;
 }
 
-TEST(MapJoiner, BelievesMotionThatDeniesAJoin) {
+TEST(JoinParts, BelievesMotionThatDeniesAJoin) {
   const test::Rectangles room = test::furnishedRoom(1);
   const std::vector<MapPart> parts = {partOf(room, 0, 0), partOf(room, 1, 40)};
   ExpectedBeginning beginning;
-  beginning.last_scan = 15;
-  beginning.first_scan = 40;
+  beginning.last = {0, 15};
+  beginning.first = {0, 40};
   beginning.information = Matrix6d::Identity() / 0.04;
   for (const double aside : {0.0, 4.0}) {
     beginning.last_from_first = poseAt(15).inverse() * poseAt(40);
     beginning.last_from_first.translation().x() += aside;
     std::vector<MapPart> some = parts;
     some[1].history.beginnings = {beginning};
-    MapJoiner(MapperParams()).joinAll(some);
+    joinParts(some, MapperParams());
     EXPECT_EQ(some.size(), aside == 0.0 ? 1U : 2U) << aside;
   }
 }
 
-TEST(MapJoiner, APlaceRecognizedWhereItCannotBeProvesNothing) {
+TEST(JoinParts, APlaceRecognizedWhereItCannotBeProvesNothing) {
   const test::Rectangles room = test::furnishedRoom(1);
   ExpectedBeginning elsewhere;
-  elsewhere.last_scan = 15;
-  elsewhere.first_scan = 40;
+  elsewhere.last = {0, 15};
+  elsewhere.first = {0, 40};
   elsewhere.last_from_first = poseAt(15).inverse() * poseAt(40);
   elsewhere.last_from_first.translation().x() += 4.0;
   elsewhere.information = Matrix6d::Identity() / 0.04;
@@ -108,20 +109,55 @@ TEST(MapJoiner, APlaceRecognizedWhereItCannotBeProvesNothing) {
   for (const bool repeats : {false, true}) {
     std::vector<MapPart> parts = {partOf(room, 0, 0), partOf(room, 1, 40), partOf(room, 2, 80)};
     if (repeats) parts[1].history.beginnings = {elsewhere};
-    MapJoiner(MapperParams()).joinAll(parts);
+    joinParts(parts, MapperParams());
     EXPECT_EQ(parts.size(), repeats ? 3U : 1U);
   }
 }
 
-TEST(MapJoiner, DoesNotCompareWhatWasTakenAsunder) {
+const Eigen::Isometry3d kAside(Eigen::Translation3d(10.0, 0.0, 0.0));
+
+/// Makes another map part of `part`, 10 m aside.
+void append(MapPart other, MapPart& part) {
+  const int joint = static_cast<int>(part.map.keyframes.size());
+  appendMap(kAside, std::move(other.map), part.map);
+  part.map.links.push_back({joint - 1, joint, 1e-6});
+  part.indexFrom(static_cast<std::size_t>(joint));
+}
+
+TEST(JoinParts, ClaimsThatMotionDeniesTogetherNeedTwiceAsManyKeyframes) {
+  const test::Rectangles room = test::furnishedRoom(1), other = test::furnishedRoom(4);
+  // The second part sees the one room, the third the other. From the one to the other the body went
+  // as the first part has it, or elsewhere: then one of both rooms is another like it.
+  for (const bool elsewhere : {false, true}) {
+    for (const int scans : {8, 16}) {
+      std::vector<MapPart> parts = {partOf(room, 0, 0, 16), partOf(room, 1, 400, scans),
+                                    partOf(other, 2, 600, 16)};
+      append(partOf(other, 0, 200, 16), parts[0]);
+      const int last = 400 + scans - 1;
+      ExpectedBeginning beginning;
+      beginning.last = {0, static_cast<std::size_t>(last)};
+      beginning.first = {0, 600};
+      Eigen::Isometry3d aside = kAside;
+      if (elsewhere) aside.translation().x() -= 4.0;
+      beginning.last_from_first =
+          poseAt(last).inverse() * poseAt(0) * aside * poseAt(200).inverse() * poseAt(600);
+      beginning.information = Matrix6d::Identity() / 0.04;
+      parts[2].history.beginnings = {beginning};
+      joinParts(parts, MapperParams());
+      EXPECT_EQ(parts.size(), !elsewhere ? 1U : scans == 16 ? 3U : 2U) << elsewhere << scans;
+    }
+  }
+}
+
+TEST(JoinParts, DoesNotCompareWhatWasTakenAsunder) {
   const test::Rectangles room = test::furnishedRoom(1);
   std::vector<MapPart> parts = {partOf(room, 0, 0), partOf(room, 1, 40)};
   parts[1].history.origins = parts[0].history.origins;
-  MapJoiner(MapperParams()).joinAll(parts);
+  joinParts(parts, MapperParams());
   EXPECT_EQ(parts.size(), 2U);
 }
 
-TEST(MapJoiner, LeavesDifferentRoomsApart) {
+TEST(JoinParts, LeavesDifferentRoomsApart) {
   for (std::uint64_t room = 1; room <= 5; ++room) {
     const Mapper mapper = mapTwice(test::furnishedRoom(room), test::furnishedRoom(room + 20), 12);
     ASSERT_EQ(mapper.parts().size(), 2U) << "room " << room;
@@ -130,7 +166,7 @@ TEST(MapJoiner, LeavesDifferentRoomsApart) {
   }
 }
 
-TEST(MapJoiner, ClaimsNothingInARoomThatLooksTheSameFromTwoSides) {
+TEST(JoinParts, ClaimsNothingInARoomThatLooksTheSameFromTwoSides) {
   const test::Rectangles room = test::roomSides({-2.0, -1.5, 0.0}, {2.0, 1.5, 2.5});
   const Mapper mapper = mapTwice(room, room, 12);
   EXPECT_EQ(mapper.parts().size(), 2U);

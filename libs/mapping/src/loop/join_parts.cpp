@@ -1,0 +1,252 @@
+// SPDX-FileCopyrightText: 2026 The opp-mapping authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "opp/mapping/loop/join_parts.h"
+
+#include "opp/mapping/backend/settle_map.h"
+#include "opp/mapping/loop/claim_pool.h"
+#include "opp/mapping/loop/close_loops.h"
+#include "opp/mapping/loop/join_maps.h"
+#include "opp/mapping/loop/map_conflict.h"
+#include "opp/mapping/loop/match_place.h"
+#include "opp/mapping/loop/place.h"
+
+#include <algorithm>
+#include <map>
+#include <optional>
+#include <utility>
+
+namespace opp::mapping {
+namespace {
+
+using Index = std::size_t;
+
+/// Keyframes of a part that look for their places, about.
+constexpr int kClaimants = 40;
+
+bool haveCommon(const std::set<int>& a, const std::set<int>& b) {
+  return std::any_of(a.begin(), a.end(), [&](int id) { return b.count(id) > 0; });
+}
+
+/// A claim about two parts, by their indices; `a` comes before `b`.
+struct PartClaim {
+  Index a = 0, b = 0;
+  PlaceClaim claim;
+};
+
+/// Claims about two parts that agree.
+struct SharedClaim {
+  Index a = 0, b = 0;
+  std::vector<PlaceClaim> claims;
+
+  const Eigen::Isometry3d& a_from_b() const { return claims.front().map_a_from_map_b; }
+  /// Pose of the other part in this one.
+  Eigen::Isometry3d from(Index part) const { return part == a ? a_from_b() : a_from_b().inverse(); }
+  bool isAbout(const PartClaim& c) const { return c.a == a && c.b == b; }
+};
+
+class Joiner {
+ public:
+  Joiner(std::vector<MapPart>& parts, const MapperParams& params)
+      : parts_(parts), params_(params) {}
+
+  void run() {
+    for (Index p = 0; p < parts_.size(); ++p) {
+      const int keyframes = static_cast<int>(parts_[p].map.keyframes.size());
+      const int step = 1 + keyframes / kClaimants;
+      for (int k = 0; k < keyframes; k += step) look(p, k);
+    }
+    while (joinBest()) {
+    }
+  }
+
+ private:
+  struct Candidate {
+    double likeness;
+    Index part;
+    int keyframe;
+  };
+
+  /// Keyframes of older parts that resemble the scan most, each at a place of its own.
+  std::vector<Candidate> candidates(Index claimant, const Primitives& primitives) const {
+    std::vector<Candidate> ranked;
+    for (Index p = 0; p < claimant; ++p) {
+      if (haveCommon(parts_[p].history.origins, parts_[claimant].history.origins)) continue;
+      const std::vector<double> likeness = parts_[p].index.likeness(primitives);
+      for (Index k = 0; k < likeness.size(); ++k) {
+        ranked.push_back({likeness[k], p, static_cast<int>(k)});
+      }
+    }
+    std::stable_sort(ranked.begin(), ranked.end(), [](const Candidate& x, const Candidate& y) {
+      return x.likeness > y.likeness;
+    });
+    std::vector<Candidate> chosen;
+    for (const Candidate& c : ranked) {
+      if (chosen.size() == Index(params_.loop.max_candidates)) break;
+      const bool new_place =
+          std::none_of(chosen.begin(), chosen.end(), [&](const Candidate& other) {
+            return other.part == c.part &&
+                   (viewOf(c) - viewOf(other)).norm() <= 0.5 * params_.loop.search_distance;
+          });
+      if (new_place) chosen.push_back(c);
+    }
+    return chosen;
+  }
+
+  Eigen::Vector3d viewOf(const Candidate& c) const {
+    return parts_[c.part].map.keyframes[Index(c.keyframe)].viewCentre();
+  }
+
+  /// One keyframe claims what it can.
+  void look(Index part, int keyframe) {
+    const MapState& own = parts_[part].map;
+    const ScanFeatures& scan = own.keyframes[Index(keyframe)].features;
+    const std::vector<Candidate> places = candidates(part, scan.primitives_in_body);
+    if (places.empty()) return;
+    const Place own_place =
+        placeOf(own, keyframe, connectedViews(own, keyframe, params_.loop.place_keyframes, params_),
+                params_);
+    for (const Candidate& c : places) {
+      const MapState& other = parts_[c.part].map;
+      const auto match =
+          matchPlace(other, c.keyframe, scan, own_place.features, std::nullopt, params_);
+      if (!match) continue;
+      claims_.push_back({c.part, part, claimOf(other, *match, own, keyframe)});
+    }
+  }
+
+  /// The place was recognized where it cannot be.
+  void refute(const PartClaim& c) {
+    parts_[c.a].markRepeated(c.claim.keyframe_a);
+    parts_[c.b].markRepeated(c.claim.keyframe_b);
+  }
+
+  template <typename Predicate>
+  void drop(const Predicate& unwanted) {
+    claims_.erase(std::remove_if(claims_.begin(), claims_.end(), unwanted), claims_.end());
+  }
+
+  /// Drops what motion denies, and then all claims about places that have others like them.
+  void dropRefuted() {
+    drop([&](const PartClaim& c) {
+      const bool denied =
+          !motionAllows(parts_[c.a], parts_[c.b], c.claim.map_a_from_map_b, params_);
+      if (denied) refute(c);
+      return denied;
+    });
+    const double reach = params_.loop.search_distance;
+    drop([&](const PartClaim& c) {
+      return parts_[c.a].seesRepeated(c.claim.keyframe_a, reach) ||
+             parts_[c.b].seesRepeated(c.claim.keyframe_b, reach);
+    });
+  }
+
+  bool conflicts(const SharedClaim& agreement) const {
+    return conflictOf(viewsOf(parts_[agreement.a].map), viewsOf(parts_[agreement.b].map),
+                      agreement.a_from_b(), params_) > params_.global_alignment.max_conflict;
+  }
+
+  /// What is claimed of each two parts, what most keyframes claim first.
+  std::vector<SharedClaim> agreements() const {
+    std::map<std::pair<Index, Index>, ClaimPool> pools;
+    for (const PartClaim& c : claims_)
+      pools.try_emplace({c.a, c.b}, params_.loop).first->second.add(c.claim);
+    std::vector<SharedClaim> result;
+    for (const auto& [between, pool] : pools) {
+      std::vector<PlaceClaim> agreed = pool.agreed();
+      if (!agreed.empty()) result.push_back({between.first, between.second, std::move(agreed)});
+    }
+    std::stable_sort(result.begin(), result.end(), [](const SharedClaim& x, const SharedClaim& y) {
+      return claimantsOf(x.claims) > claimantsOf(y.claims);
+    });
+    return result;
+  }
+
+  /// Whether motion denies that both are right: each may agree with it, but not what follows of the
+  /// two parts that only one of them is about.
+  bool exclude(const SharedClaim& x, const SharedClaim& y) const {
+    for (const Index shared : {x.a, x.b}) {
+      if (shared != y.a && shared != y.b) continue;
+      const Index p = x.a + x.b - shared, q = y.a + y.b - shared;
+      if (p == q) return false;
+      return !motionAllows(parts_[p], parts_[q], x.from(shared).inverse() * y.from(shared),
+                           params_);
+    }
+    return false;
+  }
+
+  /// The claims of most keyframes that nothing denies.
+  std::optional<SharedClaim> best() {
+    for (;;) {
+      dropRefuted();
+      const std::vector<SharedClaim> all = agreements();
+      if (all.empty()) return std::nullopt;
+      const SharedClaim& first = all.front();
+      if (conflicts(first)) {
+        for (const PlaceClaim& claim : first.claims) refute({first.a, first.b, claim});
+        continue;
+      }
+      const auto rival = std::find_if(all.begin() + 1, all.end(), [&](const SharedClaim& other) {
+        return static_cast<double>(claimantsOf(first.claims)) <
+                   params_.loop.rival_ratio * static_cast<double>(claimantsOf(other.claims)) &&
+               exclude(first, other);
+      });
+      if (rival == all.end()) return first;
+      // One of them is wrong, and nothing tells which.
+      drop([&](const PartClaim& c) { return first.isAbout(c) || rival->isAbout(c); });
+    }
+  }
+
+  bool joinBest() {
+    const std::optional<SharedClaim> agreement = best();
+    if (!agreement) return false;
+    const auto& [a, b, claims] = *agreement;
+    MapPart &host = parts_[a], &guest = parts_[b];
+    const int first = static_cast<int>(host.map.keyframes.size());
+    appendMap(agreement->a_from_b(), std::move(guest.map), host.map);
+    for (PlaceClaim claim : claims) {
+      claim.keyframe_b += first;
+      tie(claim, params_.loop, host.map);
+    }
+    ++host.map.loop_closures;
+    settleMap(host.map, 1, params_);
+    host.indexFrom(Index(first));
+    host.history.merge(guest.history);
+    parts_.erase(parts_.begin() + static_cast<std::ptrdiff_t>(b));
+    renumber(a, b, first);
+    return true;
+  }
+
+  /// Part `b` became part of `a`, its keyframes from `first` on.
+  void renumber(Index a, Index b, int first) {
+    const auto follow = [&](Index& part, int& keyframe) {
+      if (part == b) {
+        part = a;
+        keyframe += first;
+      } else if (part > b) {
+        --part;
+      }
+    };
+    for (PartClaim& c : claims_) {
+      follow(c.a, c.claim.keyframe_a);
+      follow(c.b, c.claim.keyframe_b);
+      if (c.a > c.b) {
+        std::swap(c.a, c.b);
+        c.claim = seenFromOther(c.claim);
+      }
+      relate(parts_[c.a].map, parts_[c.b].map, c.claim);
+    }
+    drop([](const PartClaim& c) { return c.a == c.b; });
+  }
+
+  std::vector<MapPart>& parts_;
+  const MapperParams& params_;
+  std::vector<PartClaim> claims_;
+};
+
+}  // namespace
+
+void joinParts(std::vector<MapPart>& parts, const MapperParams& params) {
+  if (params.loop.join_maps && parts.size() > 1) Joiner(parts, params).run();
+}
+
+}  // namespace opp::mapping
