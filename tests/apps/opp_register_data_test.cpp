@@ -8,6 +8,9 @@
 #include <nlohmann/json.hpp>
 
 #include <fstream>
+#include <set>
+#include <string>
+#include <vector>
 
 namespace opp::test {
 namespace {
@@ -56,6 +59,40 @@ TEST(OppRegisterData, AlignsObservationsOfARawlog) {
   const Eigen::Isometry3d loop = poseOf(answer) * poseOf(back);
   EXPECT_LT(Eigen::AngleAxisd(loop.linear()).angle(), 0.005);
   EXPECT_LT(loop.translation().norm(), 0.01);
+}
+
+/// The bytes of ten answers, with one to four threads and as many as there are cores.
+std::set<std::string> tenAnswers(const std::vector<std::string>& arguments) {
+  std::set<std::string> answers;
+  for (int k = 0; k < 10; ++k) {
+    std::vector<std::string> all = arguments;
+    if (k % 5 != 0) all.insert(all.end(), {"--threads", std::to_string(k % 5)});
+    const CommandResult result = runApp("opp-register", all);
+    EXPECT_EQ(result.exit_code, 0) << result;
+    answers.insert(result.out);
+  }
+  return answers;
+}
+
+TEST(OppRegisterData, TenRunsWithAnyThreadsGiveTheSameBytes) {
+  OPP_SKIP_WITHOUT_SHARED_DATA();
+  const auto pair = [](const std::string& name, const std::string& source_index) {
+    const std::string rawlog = sharedData(name + ".rawlog").string();
+    return std::vector<std::string>{"--target", rawlog,           "--source",
+                                    rawlog,     "--source-index", source_index};
+  };
+  // A real camera's scans that are aligned, and two of a symmetric hall, where no pose is claimed.
+  for (const auto& [arguments, aligned] :
+       {std::pair{pair("tum_fr3_structure_notexture_far", "60"), true},
+        std::pair{pair("simulated_lidar_hall", "10"), false}}) {
+    for (const std::string mode : {"auto", "corners"}) {
+      std::vector<std::string> all = arguments;
+      all.insert(all.end(), {"--mode", mode});
+      const std::set<std::string> answers = tenAnswers(all);
+      ASSERT_EQ(answers.size(), 1U) << mode;
+      EXPECT_EQ(Json::parse(*answers.begin()).at("success"), aligned) << *answers.begin();
+    }
+  }
 }
 
 }  // namespace
