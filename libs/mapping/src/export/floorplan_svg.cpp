@@ -6,13 +6,12 @@
 #include "opp/mapping/io/atomic_file.h"
 #include "opp/mapping/planar/level_frame.h"
 
+#include "export/drawing_numbers.h"
 #include "export/wall_cut.h"
 
 #include <Eigen/Geometry>
 
 #include <algorithm>
-#include <array>
-#include <charconv>
 #include <cmath>
 #include <limits>
 #include <ostream>
@@ -25,22 +24,14 @@ constexpr double kCutHeight = 1.2;  ///< [m] above the floor: architects' habit,
 constexpr double kMargin = 0.5;     ///< [m] around the plan
 constexpr double kBarRoom = 0.6;    ///< [m] for the scale bar below it
 
-std::string number(double value) {
-  std::array<char, 64> buffer;
-  // Tenths of a unit are millimetres; adding zero turns −0 to 0.
-  const double rounded = std::round(10.0 * value) / 10.0 + 0.0;
-  const auto end = std::to_chars(buffer.data(), buffer.data() + buffer.size(), rounded).ptr;
-  return std::string(buffer.data(), end);
-}
-
 /// Collects the drawing in units of the page: x to the right, y down.
 class Drawing {
  public:
   explicit Drawing(const Eigen::AlignedBox2d& bounds) : bounds_(bounds) {}
 
   std::string at(const Eigen::Vector2d& point) const {
-    return number(kUnitsPerMetre * (point.x() - bounds_.min().x())) + ' ' +
-           number(kUnitsPerMetre * (bounds_.max().y() - point.y()));
+    return svgNumber(kUnitsPerMetre * (point.x() - bounds_.min().x())) + ' ' +
+           svgNumber(kUnitsPerMetre * (bounds_.max().y() - point.y()));
   }
 
   void polygons(const PlanarMapPlane& plane, const std::string& style) {
@@ -70,10 +61,7 @@ class Drawing {
 
   /// A bar of 1, 2 or 5 times a power of ten metres, about a quarter of the page.
   void scaleBar() {
-    const double wanted = 0.25 * bounds_.sizes().x();
-    const double power = std::pow(10.0, std::floor(std::log10(wanted)));
-    const double digit = wanted / power >= 5.0 ? 5.0 : wanted / power >= 2.0 ? 2.0 : 1.0;
-    const double length = digit * power;
+    const double length = roundStep(0.25 * bounds_.sizes().x());
     const Eigen::Vector2d left = bounds_.min() + Eigen::Vector2d(kMargin, 0.4 * kBarRoom);
     const Eigen::Vector2d right = left + Eigen::Vector2d(length, 0.0);
     const Eigen::Vector2d tick(0.0, 0.1);
@@ -82,13 +70,13 @@ class Drawing {
     std::string place = at(right + Eigen::Vector2d(0.15, 0.0));
     place.replace(place.find(' '), 1, "\" y=\"");
     const bool in_metres = length >= 1.0;
-    body_ += "<text x=\"" + place + "\">" + number(in_metres ? length : 100.0 * length) +
+    body_ += "<text x=\"" + place + "\">" + svgNumber(in_metres ? length : 100.0 * length) +
              (in_metres ? " m" : " cm") + "</text>\n";
   }
 
   std::string svg() const {
-    const std::string width = number(kUnitsPerMetre * bounds_.sizes().x());
-    const std::string height = number(kUnitsPerMetre * bounds_.sizes().y());
+    const std::string width = svgNumber(kUnitsPerMetre * bounds_.sizes().x());
+    const std::string height = svgNumber(kUnitsPerMetre * bounds_.sizes().y());
     return "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 " + width + ' ' + height +
            "\" width=\"" + width + "\" height=\"" + height +
            "\">\n<style>path{fill:none;stroke-linecap:round;stroke-linejoin:round}"
