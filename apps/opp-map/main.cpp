@@ -12,7 +12,9 @@
 #include "opp/mapping/pipeline/build_occupancy_map.h"
 #include "opp/mapping/pipeline/map_rawlog.h"
 #include "opp/mapping/pipeline/mapper.h"
+#include "opp/mapping/pipeline/report_figures.h"
 #include "opp/mapping/planar/planar_map_of_landmarks.h"
+#include "opp/mapping/report/html_report.h"
 
 #include "common/progress.h"
 #include "common/run_main.h"
@@ -83,10 +85,14 @@ opp::mapping::PlanarMap writeMap(const MapOptions& options, const MapState& map,
   return planar;
 }
 
-void writeMaps(const MapOptions& options, const opp::mapping::Mapper& mapper, RunReport& report,
-               const std::filesystem::path& folder) {
+/// The planar maps of the parts, the main map first.
+std::vector<opp::mapping::PlanarMap> writeMaps(const MapOptions& options,
+                                               const opp::mapping::Mapper& mapper,
+                                               RunReport& report,
+                                               const std::filesystem::path& folder) {
   const auto start = std::chrono::steady_clock::now();
-  const opp::mapping::PlanarMap map = writeMap(options, mapper.map(), folder);
+  std::vector<opp::mapping::PlanarMap> maps = {writeMap(options, mapper.map(), folder)};
+  const opp::mapping::PlanarMap& map = maps.front();
   report.counts["planes"] = map.planes.size();
   report.counts["lines"] = map.lines.size();
   report.counts["corners"] = map.corners.size();
@@ -94,9 +100,10 @@ void writeMaps(const MapOptions& options, const opp::mapping::Mapper& mapper, Ru
   for (std::size_t p = 1; p < mapper.parts().size(); ++p) {
     const std::filesystem::path part = folder / "parts" / std::to_string(p);
     std::filesystem::create_directories(part);
-    writeMap(options, mapper.parts()[p].map, part);
+    maps.push_back(writeMap(options, mapper.parts()[p].map, part));
   }
   report.seconds["export"] = secondsSince(start);
+  return maps;
 }
 
 void writeKeyframes(const MapOptions& options, const MapState& map, RunReport& report,
@@ -127,10 +134,12 @@ void run(opp::apps::CommandLine& line) {
   opp::mapping::OutputFolder output(options.output, options.force);
   RunReport report;
   const opp::mapping::Mapper mapper = buildMap(options, report);
-  writeMaps(options, mapper, report, output.path());
+  const auto maps = writeMaps(options, mapper, report, output.path());
   writeKeyframes(options, mapper.map(), report, output.path());
   if (options.octomap) writeOccupancyMap(options, mapper.map(), report, output.path());
   writeRun(options, report, output.path());
+  opp::mapping::writeHtmlReport(
+      output.path(), opp::mapping::reportFigures(mapper, report, maps, options.params.planar));
   output.commit();
 }
 

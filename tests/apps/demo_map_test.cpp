@@ -8,13 +8,44 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 
+#include <cstdint>
 #include <memory>
 
 namespace opp::test {
 namespace {
 
 const std::string kRawlogs = OPP_SOURCE_FOLDER "/rawlogs/";
+
+/// Not a matcher, which would print the whole page.
+bool has(const std::string& page, const std::string& text) {
+  return page.find(text) != std::string::npos;
+}
+
+/// What the text has between the two words; empty if it lacks them.
+std::string between(const std::string& text, const std::string& before, const std::string& after) {
+  const std::size_t found = text.find(before);
+  if (found == std::string::npos) return "";
+  const std::size_t begin = found + before.size();
+  return text.substr(begin, text.find(after, begin) - begin);
+}
+
+std::string decodedBase64(const std::string& text) {
+  const std::string digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string bytes;
+  std::uint32_t bits = 0;
+  int count = 0;
+  for (const char letter : text) {
+    if (letter == '=') break;
+    bits = bits << 6U | static_cast<std::uint32_t>(digits.find(letter));
+    count += 6;
+    if (count < 8) continue;
+    count -= 8;
+    bytes += static_cast<char>(bits >> static_cast<unsigned>(count) & 255U);
+  }
+  return bytes;
+}
 
 /// One run of opp-map on the demo, shared by the tests.
 class DemoMap : public testing::Test {
@@ -39,7 +70,9 @@ CommandResult DemoMap::result_;
 TEST_F(DemoMap, HasTheFilesOfTheContract) {
   const std::vector<std::string> names = folder_->contents();
   for (const char* name :
-       {"trajectory.tum", "map.bt", "map.ot", "planar_map.json", "run.json", "effective.ini"}) {
+       {"trajectory.tum", "map.bt", "map.ot", "planar_map.json", "planar_map.ply", "planar_map.obj",
+        "planar_map.glb", "floorplan.svg", "scene.3Dscene", "map.simplemap", "report.html",
+        "run.json", "effective.ini"}) {
     EXPECT_THAT(names, testing::Contains(std::string("out/") + name));
   }
   EXPECT_THAT(names, testing::Not(testing::Contains(testing::HasSubstr("/.")))) << "leftovers";
@@ -75,6 +108,32 @@ TEST_F(DemoMap, OctomapsOwnToolsReadItsMaps) {
 TEST_F(DemoMap, PlanarMapFollowsItsSchema) {
   const CommandResult result = validatePlanarMaps({file("planar_map.json")});
   EXPECT_EQ(result.exit_code, 0) << result;
+}
+
+TEST_F(DemoMap, ReportHoldsTheMeshAndTheFloorPlanByteForByte) {
+  const std::string page = readFile(file("report.html"));
+  const std::string mesh = between(page, "<script type=\"text/plain\" id=\"glb\">", "</script>");
+  EXPECT_TRUE(decodedBase64(mesh) == readFile(file("planar_map.glb")));
+  const std::string plan = between(page, "src=\"data:image/svg+xml;base64,", "\"");
+  EXPECT_TRUE(decodedBase64(plan) == readFile(file("floorplan.svg")));
+  EXPECT_LT(page.size(), 2000000U);
+}
+
+TEST_F(DemoMap, ReportHasTheFiguresOfRunJson) {
+  const std::string page = readFile(file("report.html"));
+  const auto run = nlohmann::json::parse(readFile(file("run.json")));
+  ASSERT_FALSE(run["seconds"].empty());
+  for (const auto& [stage, seconds] : run["seconds"].items()) {
+    EXPECT_TRUE(has(page, "<th>" + stage + "</th><td><data value=\"" + seconds.dump() + "\">"));
+  }
+  for (const auto& [name, count] : run["counts"].items()) {
+    EXPECT_TRUE(has(page, "<th>" + name + "</th><td>" + count.dump() + "</td>"));
+  }
+  const auto& session = run["sessions"].at(0);
+  EXPECT_TRUE(has(page, "sha256 " + session["input"]["sha256"].get<std::string>()));
+  for (const auto& value : {session["path_length_m"], run["peak_memory_mb"]}) {
+    EXPECT_TRUE(has(page, "<data value=\"" + value.dump() + "\">"));
+  }
 }
 
 }  // namespace

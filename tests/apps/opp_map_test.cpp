@@ -135,5 +135,27 @@ TEST_F(OppMap, FinishedRunIsKeptUnlessForced) {
   EXPECT_LT(readFile(folder_ / "out/trajectory.tum").size(), before.size());
 }
 
+TEST_F(OppMap, ReportHasEveryWarningEscaped) {
+  const std::string cut = (folder_ / "a<b>&\"c'.rawlog").string();
+  const std::string whole = readFile(kDemo);
+  writeFile(cut, whole.substr(0, whole.size() / 8));
+  const CommandResult result = map({"-i", cut, "--no-octomap"});
+  ASSERT_EQ(result.exit_code, 0) << result;
+  const auto run = nlohmann::json::parse(readFile(folder_ / "out/run.json"));
+  ASSERT_FALSE(run["warnings"].empty()) << "a damaged rawlog";
+  const std::string page = readFile(folder_ / "out/report.html");
+  for (const auto& warning : run["warnings"]) {
+    std::string text;
+    for (const char letter : warning.get<std::string>()) {
+      const std::map<char, std::string> names = {
+          {'<', "&lt;"}, {'>', "&gt;"}, {'&', "&amp;"}, {'"', "&quot;"}, {'\'', "&#39;"}};
+      text += names.count(letter) == 1 ? names.at(letter) : std::string(1, letter);
+    }
+    EXPECT_NE(page.find("<li>" + text + "</li>"), std::string::npos) << text;
+  }
+  EXPECT_NE(page.find("a&lt;b&gt;&amp;&quot;c&#39;.rawlog"), std::string::npos);
+  EXPECT_EQ(page.find("a<b>"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace opp::test

@@ -104,6 +104,7 @@ void mapRawlog(const std::filesystem::path& rawlog, const MapRawlogOptions& opti
   while (std::optional<FeatureFrame> frame = stream.next()) {
     const Clock::time_point start_tracking = Clock::now();
     frame->features.session = id;
+    session.scans.push_back({frame->features.scan_index, frame->features.timestamp});
     const auto given = poseNear(options.initial_poses, frame->features.timestamp);
     if (given && id == 0 && session.frames_read == 0) mapper.setInitialPose(*given);
     mapper.add(std::move(frame->features), given ? given : frame->odom_from_body);

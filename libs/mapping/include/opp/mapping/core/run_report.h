@@ -10,6 +10,12 @@
 
 namespace opp::mapping {
 
+/// A scan that was read.
+struct ScanStamp {
+  std::size_t scan_index = 0;  ///< see ScanFeatures
+  double timestamp = 0.0;      ///< Unix time [s]
+};
+
 /// What became of one input rawlog.
 struct SessionReport {
   std::string path;
@@ -22,6 +28,7 @@ struct SessionReport {
   std::size_t keyframes = 0;
   double path_length = 0.0;       ///< of the localized frames [m]
   std::size_t loop_closures = 0;  ///< loops and joins in which a keyframe of it was recognized
+  std::vector<ScanStamp> scans;   ///< all that were read, in that order; not in run.json
 };
 
 /// What a run did: the contents of run.json.
