@@ -155,6 +155,39 @@ TEST(AlignGlobally, ABareCornerConfirmsNothing) {
   expectPose(near, same, degToRad(0.2), 0.005, 0);
 }
 
+/// A corner of three equal sides, each with a cube of one of these widths on its middle: turns lay
+/// the sides on each other.
+test::Rectangles cornerWithCubes(const std::vector<double>& widths) {
+  test::Rectangles scene = bareCorner({2.5, 2.5, 2.5});
+  for (std::size_t k = 0; k < widths.size(); ++k) {
+    Eigen::Vector3d center = Eigen::Vector3d::Constant(1.2);
+    center[static_cast<Eigen::Index>(k)] = 0.5 * widths[k];
+    const Eigen::Vector3d half = Eigen::Vector3d::Constant(0.5 * widths[k]);
+    for (const test::Rectangle& side : test::boxSides(center - half, center + half)) {
+      scene.push_back(side);
+    }
+  }
+  return scene;
+}
+
+GlobalAlignment alignCornerWithCubes(const std::vector<double>& widths) {
+  const test::Rectangles scene = cornerWithCubes(widths);
+  const Eigen::Isometry3d same = Eigen::Isometry3d::Identity();
+  return align(see(scene, {2.4, 2.5, 2.6}, same, 0.001, 1),
+               see(scene, {2.6, 2.4, 2.5}, same, 0.001, 2));
+}
+
+TEST(AlignGlobally, APoseThatNothingConfirmsIsAWeakRival) {
+  // The turns lose the only cube, which is all that tells them apart from the right pose.
+  const GlobalAlignment one = alignCornerWithCubes({0.35});
+  EXPECT_LT(one.clarity, GlobalAlignmentParams().min_clarity);
+  expectPose(one, Eigen::Isometry3d::Identity(), degToRad(0.2), 0.005, 0);
+  // As clear, but here a turn lays cubes on cubes that are hardly smaller.
+  const GlobalAlignment three = alignCornerWithCubes({0.55, 0.5, 0.5});
+  EXPECT_GE(three.clarity, one.clarity);
+  EXPECT_EQ(three.outcome, AlignmentOutcome::kAmbiguous) << describe(three.outcome);
+}
+
 TEST(AlignGlobally, ManagesWithoutSidesAndViewpoints) {
   test::Random random(4);
   for (std::uint64_t seed = 0; seed < 10; ++seed) {

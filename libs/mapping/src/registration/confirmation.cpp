@@ -54,10 +54,14 @@ std::vector<std::uint32_t> agreeingTargetSamples(const ScanModel& target, const 
 
 }  // namespace
 
-double confirmation(const ScanModel& target, const ScanModel& source, const Candidate& candidate) {
+double Confirmation::share() const {
+  return agreeing == 0 ? 0.0 : static_cast<double>(confirming) / agreeing;
+}
+
+Confirmation confirmationOf(const ScanModel& target, const ScanModel& source,
+                            const Candidate& candidate) {
   const std::vector<std::uint32_t> agreeing =
       agreeingTargetSamples(target, source, candidate.verification);
-  if (agreeing.empty()) return 0.0;
   const std::vector<Plane> basis = basisOf(target, agreeing);
   // Wide, so that what bends away from a surface or sticks out of it a little does not count.
   const double reach = 0.5 * std::max(target.voxels.cell(), source.voxels.cell());
@@ -67,7 +71,7 @@ double confirmation(const ScanModel& target, const ScanModel& source, const Cand
       return std::abs(plane.signedDistance(point)) > reach;
     });
   });
-  return static_cast<double>(beyond) / static_cast<double>(agreeing.size());
+  return {static_cast<int>(agreeing.size()), static_cast<int>(beyond)};
 }
 
 }  // namespace opp::mapping

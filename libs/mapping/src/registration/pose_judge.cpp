@@ -17,6 +17,10 @@ namespace {
 constexpr double kCornerReach = 2.0;
 /// Sample spacings that a refined pose may still be off.
 constexpr double kRefinedSlack = 0.25;
+/// A pose with less than this share of the best's confirming samples is a weak rival: the best need
+/// be preferred to it only by this share of the clarity.
+constexpr double kWeakShare = 0.5;
+constexpr double kWeakClarity = 0.5;
 
 /// Against the strongest of the other candidates.
 double clarityOfBest(const std::vector<Candidate>& candidates) {
@@ -50,22 +54,36 @@ GlobalAlignment PoseJudge::judge(const std::vector<Candidate>& candidates) const
   answer.corner_matches = cornerMatches(best.pose.target_from_source);
   answer.observed_dof = observedDof(best);
   answer.clarity = clarityOfBest(candidates);
-  answer.confirmation = confirmation(target_, source_, best);
-  answer.outcome = outcome(best, answer);
+  answer.confirmation = confirmationOf(target_, source_, best).share();
+  answer.outcome = outcome(candidates, answer);
   if (answer.outcome != AlignmentOutcome::kAligned) return answer;
   answer.target_from_source = best.pose.target_from_source;
   answer.covariance = covarianceAt(target_, source_, answer.target_from_source, params_);
   return answer;
 }
 
-AlignmentOutcome PoseJudge::outcome(const Candidate& best, const GlobalAlignment& answer) const {
+AlignmentOutcome PoseJudge::outcome(const std::vector<Candidate>& candidates,
+                                    const GlobalAlignment& answer) const {
+  const Candidate& best = candidates.front();
   if (best.score <= 0.0 || answer.overlap < params_.min_overlap ||
       best.verification.conflict() > params_.max_conflict) {
     return AlignmentOutcome::kNoOverlap;
   }
   if (answer.observed_dof < 6) return AlignmentOutcome::kInsufficient;
-  if (answer.clarity < params_.min_clarity) return AlignmentOutcome::kAmbiguous;
-  return AlignmentOutcome::kAligned;
+  const bool ambiguous = std::any_of(candidates.begin() + 1, candidates.end(),
+                                     [&](const Candidate& other) { return rivals(best, other); });
+  return ambiguous ? AlignmentOutcome::kAmbiguous : AlignmentOutcome::kAligned;
+}
+
+/// Does the other pose explain the scans about as well? Three surfaces can be laid on three others
+/// somewhere in any two rooms, so what agrees there is no evidence; a pose that has far less than
+/// the best beyond them has to be nearly as good in all to be a rival.
+bool PoseJudge::rivals(const Candidate& best, const Candidate& other) const {
+  const double advantage = clarity(best.verification, other.verification);
+  if (advantage >= params_.min_clarity) return false;
+  if (advantage < kWeakClarity * params_.min_clarity) return true;
+  return confirmationOf(target_, source_, other).confirming >=
+         kWeakShare * confirmationOf(target_, source_, best).confirming;
 }
 
 /// Degrees of freedom that enough samples see and in which the best pose cannot be moved by a

@@ -21,6 +21,18 @@ struct Candidate {
   double score = 0.0;
 };
 
+/// What speaks for a pose beyond that which fixes it. A corner of a room has nothing.
+struct Confirmation {
+  int agreeing = 0;    ///< samples, counted from both sides
+  int confirming = 0;  ///< of these: on none of the three surfaces (fewer where there are fewer)
+                       ///< with independent normals that have most of them
+
+  double share() const;
+};
+
+Confirmation confirmationOf(const ScanModel& target, const ScanModel& source,
+                            const Candidate& candidate);
+
 /// Answers whether a pose may be claimed.
 class PoseJudge {
  public:
@@ -35,7 +47,9 @@ class PoseJudge {
   GlobalAlignment judge(const std::vector<Candidate>& candidates) const;
 
  private:
-  AlignmentOutcome outcome(const Candidate& best, const GlobalAlignment& answer) const;
+  AlignmentOutcome outcome(const std::vector<Candidate>& candidates,
+                           const GlobalAlignment& answer) const;
+  bool rivals(const Candidate& best, const Candidate& other) const;
   int observedDof(const Candidate& best) const;
   bool slides(const Candidate& best, const Vector6d& step) const;
   Vector6d units() const;
@@ -47,10 +61,5 @@ class PoseJudge {
   const GlobalAlignmentParams& params_;
   double refined_slack_, distinct_step_;
 };
-
-/// Share of the agreeing samples that are on none of the three surfaces (fewer where there are
-/// fewer) with independent normals that have most of them: what speaks for the pose beyond that
-/// which fixes it. A corner of a room has none.
-double confirmation(const ScanModel& target, const ScanModel& source, const Candidate& candidate);
 
 }  // namespace opp::mapping

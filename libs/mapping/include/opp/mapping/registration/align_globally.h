@@ -53,8 +53,8 @@ struct GlobalAlignment {
   double overlap = 0.0;  ///< of the best hypothesis
   double rms = 0.0;      ///< distance of agreeing samples at the best hypothesis [m]
   /// How clearly the samples prefer the best pose to every other that was tried: votes for it minus
-  /// votes for the other, over the geometric mean of all samples and of those that tell the two
-  /// apart. Below 0.2 several poses explain the scans.
+  /// votes for the other, over the geometric mean of all samples and of those that tell them apart.
+  /// Below 0.2 (0.1 if the other has far less that confirms it) several poses explain the scans.
   double clarity = 1.0;
   /// Share of the agreeing samples that lie on none of the three surfaces that fix the pose.
   double confirmation = 0.0;
