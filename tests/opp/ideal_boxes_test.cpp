@@ -51,6 +51,7 @@ PrimitiveParams idealSensor() {
   params.sensor.noise_constant = 1e-6;
   params.sensor.noise_quadratic = 0.0;
   params.sensor.distortion_quadratic = 0.0;
+  params.sampling.lateral_noise = 0.0;
   params.refinement.systematic_angle = 0.0;
   return params;
 }

@@ -193,6 +193,8 @@ TEST(OrientedCloud, OffsetsOfSamplesHaveTheStatedStandardDeviation) {
   Random random(3);
   SensorModel sensor;
   sensor.max_range = 20.0;  // noise at the gate would keep the near half of the points only
+  SamplingParams params;
+  params.lateral_noise = 0.0;  // none is drawn
   double squares = 0.0;
   std::size_t samples = 0;
   for (int trial = 0; trial < 20; ++trial) {
@@ -200,7 +202,7 @@ TEST(OrientedCloud, OffsetsOfSamplesHaveTheStatedStandardDeviation) {
         Plane::fromPointNormal(Vector3d(random.uniform(1.0, 3.0), 0, 0), Vector3d(-1, 0.5, 0.3));
     PointCloud input = test::renderDepth(kSmallCamera, test::insideOf({plane}));
     test::addRangeNoise(input, sensor, random);
-    const OrientedCloud cloud = makeOrientedCloud(input, sensor, SamplingParams{});
+    const OrientedCloud cloud = makeOrientedCloud(input, sensor, params);
     for (std::size_t i = 0; i < cloud.size(); ++i) {
       const double error = plane.signedDistance(cloud.points[i].cast<double>());
       squares += error * error * static_cast<double>(cloud.weights[i]) /

@@ -135,7 +135,8 @@ int PatchNormals::choose(int patch, int radius, PatchNormal& result) {
   if (best->angle_variance > tolerance) return sufficientRadius(*best, radius);
   const Eigen::Vector3d to_viewpoint = viewpoint_ - patches_.means[static_cast<std::size_t>(patch)];
   const bool away = best->normal.dot(to_viewpoint) < 0.0;
-  result = {away ? Eigen::Vector3d(-best->normal) : best->normal, std::sqrt(best->model_variance)};
+  result = {away ? Eigen::Vector3d(-best->normal) : best->normal,
+            std::sqrt(best->expected_variance)};
   return 0;
 }
 

@@ -15,7 +15,8 @@ namespace opp {
 /// Normal of one patch; zero: none that could be trusted.
 struct PatchNormal {
   Eigen::Vector3d normal = Eigen::Vector3d::Zero();
-  double sigma = 0.0;  ///< along the normal, of one raw point, by the sensor model [m]
+  double sigma =
+      0.0;  ///< along the normal, of one raw point: the sensor model's, and lateral noise [m]
 };
 
 /// Normals of patches from windows around them. A window grows until its normal is certain enough;
