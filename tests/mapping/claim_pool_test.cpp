@@ -52,6 +52,20 @@ TEST(ClaimPool, IsSilentWhereKeyframesContradictEachOther) {
   EXPECT_EQ(pool.agreed().size(), 4U);
 }
 
+TEST(ClaimPool, OneKeyframeIsEnoughIfNoOtherPoseComesNear) {
+  test::Random random(4);
+  const Eigen::Isometry3d pose = random.pose(3.0);
+  for (const double clarity : {0.8, 0.9}) {
+    ClaimPool pool{LoopParams()};
+    PlaceClaim claim = claimOf(1, pose);
+    claim.clarity = clarity;
+    pool.add(claim);
+    EXPECT_EQ(pool.agreed().size(), clarity > LoopParams().certain_clarity ? 1U : 0U);
+    pool.add(claimOf(2, shifted(pose, 1.0)));
+    EXPECT_TRUE(pool.agreed().empty()) << "another keyframe denies it";
+  }
+}
+
 TEST(ClaimPool, ErrorsThatDoNotAgreeAreNoRivals) {
   test::Random random(2);
   ClaimPool pool{LoopParams()};

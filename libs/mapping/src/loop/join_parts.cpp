@@ -111,6 +111,7 @@ class Joiner {
           matchPlace(other, c.keyframe, scan, own_place.features, std::nullopt, params_);
       if (!match) continue;
       claims_.push_back({c.part, part, claimOf(other, *match, own, keyframe)});
+      claims_.back().claim.clarity = match->clarity;
     }
   }
 

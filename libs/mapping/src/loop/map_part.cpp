@@ -71,8 +71,16 @@ bool reachable(const MapState& a, const MapState& b, const Eigen::Isometry3d& a_
 
 void PartHistory::merge(const PartHistory& other) {
   origins.insert(other.origins.begin(), other.origins.end());
-  beginnings.insert(beginnings.end(), other.beginnings.begin(), other.beginnings.end());
+  for (const ExpectedBeginning& beginning : other.beginnings) expect(beginning);
   repeated.insert(other.repeated.begin(), other.repeated.end());
+}
+
+void PartHistory::expect(const ExpectedBeginning& beginning) {
+  const bool known =
+      std::any_of(beginnings.begin(), beginnings.end(), [&](const ExpectedBeginning& other) {
+        return other.last == beginning.last && other.first == beginning.first;
+      });
+  if (!known) beginnings.push_back(beginning);
 }
 
 void PartHistory::expectTied(const MapState& map, const std::vector<int>& sets) {
@@ -82,7 +90,7 @@ void PartHistory::expectTied(const MapState& map, const std::vector<int>& sets) 
     if (sets[first] == sets[second]) continue;
     const ScanFeatures& from = map.keyframes[first].features;
     const ScanFeatures& to = map.keyframes[second].features;
-    beginnings.push_back({from.id(), to.id(), f.first_from_second, f.information});
+    expect({from.id(), to.id(), f.first_from_second, f.information});
   }
 }
 

@@ -68,6 +68,7 @@ PlaceMatch refined(const MapState& map, int keyframe, const ScanFeatures& scan,
     result.information = information;
     result.overlap = alignment.overlap;
   }
+  result.clarity = alignment.clarity;
   result.variance = viewVariance(alignment.covariance, keyframeOf(map, keyframe));
   return result;
 }

@@ -10,6 +10,7 @@
 #include "opp/mapping/loop/join_parts.h"
 #include "opp/mapping/loop/match_place.h"
 #include "opp/mapping/loop/split_map.h"
+#include "opp/mapping/loop/tie_parts.h"
 #include "opp/mapping/loop/tied_sets.h"
 
 #include "registration/observability.h"
@@ -70,7 +71,7 @@ FrameResult Mapper::begin(ScanFeatures scan,
   MapPart part(next_part_++, params_.loop);
   if (continues_) {
     if (const auto beginning = expectedBeginning(scan, odom_from_body))
-      part.history.beginnings.push_back(*beginning);
+      part.history.expect(*beginning);
   }
   parts_.push_back(std::move(part));
   MatchResult match;
@@ -147,6 +148,7 @@ void Mapper::splitParts() {
 void Mapper::finish() {
   splitParts();
   joinParts(parts_, params_);
+  if (tieParts(parts_)) splitParts();
   for (MapPart& part : parts_) {
     settleMap(part.map, 1, params_);
     if (unifyPlanes(part.map, params_.primitives.sensor, params_.backend) > 0)

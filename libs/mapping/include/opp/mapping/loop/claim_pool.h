@@ -25,6 +25,7 @@ struct PlaceClaim {
   /// and after it drifted.
   Eigen::Isometry3d map_a_from_map_b = Eigen::Isometry3d::Identity();
   Eigen::Vector3d place_in_map_b = Eigen::Vector3d::Zero();  ///< where the claim was made [m]
+  double clarity = 0.0;                                      ///< see PlaceMatch
   ScanId claimant;                                           ///< the keyframe that looked: a or b
 };
 
@@ -51,8 +52,8 @@ class ClaimPool {
   bool empty() const { return claims_.empty(); }
 
   /// The claims of the pose that most different keyframes agree on, if these are at least
-  /// `confirmations` and `rival_ratio` times as many as agree on any other; else empty: not proven,
-  /// or ambiguous. O(claims²).
+  /// `confirmations` (or one is as clear as `certain_clarity`) and `rival_ratio` times as many as
+  /// agree on any other; else empty: not proven, or ambiguous. O(claims²).
   std::vector<PlaceClaim> agreed() const;
 
  private:

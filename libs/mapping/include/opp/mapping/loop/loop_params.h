@@ -26,6 +26,7 @@ struct LoopParams {
   int place_keyframes = 6;
   double min_overlap = 0.5;
   int confirmations = 2;
+  double certain_clarity = 0.85;
   int memory = 15;
   double rival_ratio = 2.0;
   double agree_translation = 0.1;
@@ -61,6 +62,9 @@ struct LoopParams {
                            "share of a scan that agrees with the place it is said to see"});
     f(p.confirmations, Field{"confirmations", "", 1, 100,
                              "different keyframes that must agree before a place is believed"});
+    f(p.certain_clarity,
+      Field{"certain_clarity", "", 0.0, 1.0,
+            "one keyframe is enough if no other pose comes this near (GlobalAlignment::clarity)"});
     f(p.memory, Field{"memory", "", 1, 1e6,
                       "keyframes after which an unconfirmed loop is forgotten (drift goes on)"});
     f(p.rival_ratio,

@@ -34,6 +34,8 @@ struct PartHistory {
   std::set<ScanId> repeated;
 
   void merge(const PartHistory& other);
+  /// Once for each two scans.
+  void expect(const ExpectedBeginning& beginning);
   /// Keeps what ties the sets of keyframes (see `tiedSets`) that `map` is to be split into.
   void expectTied(const MapState& map, const std::vector<int>& sets);
 };

@@ -21,6 +21,7 @@ struct PlaceMatch {
   /// Of what is seen from there, by the scan (and its surroundings) alone, see `viewVariance` [m²].
   double variance = 0.0;
   double overlap = 0.0;  ///< see MatchResult
+  double clarity = 0.0;  ///< see GlobalAlignment; 0 where the expected pose was right
 };
 
 /// Largest variance [m²] of a keyframe's position relative to `keyframe` at which the surfaces of

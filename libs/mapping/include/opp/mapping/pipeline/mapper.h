@@ -44,9 +44,10 @@ class Mapper {
   /// A scan without samples is not localized.
   FrameResult add(ScanFeatures scan, const std::optional<Eigen::Isometry3d>& odom_from_body);
 
-  /// Takes parts asunder where they are tied so loosely that poses would be invented, looks once
-  /// more for proof that parts belong together, gives up those that are too small, and optimizes
-  /// each as a whole; to be called after the last scan.
+  /// Takes parts asunder where they are tied so loosely that poses would be invented, joins those
+  /// that are proven to belong together, looks whether what joined ties better what was taken
+  /// asunder, gives up parts that are too small, and optimizes each as a whole; to be called after
+  /// the last scan.
   void finish();
 
   /// The parts that stayed apart, after `finish` those with most scans first; empty before the
