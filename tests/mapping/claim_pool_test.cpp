@@ -27,7 +27,7 @@ Eigen::Isometry3d shifted(const Eigen::Isometry3d& pose, double x) {
 TEST(ClaimPool, BelievesWhatSeveralKeyframesSay) {
   test::Random random(1);
   for (int trial = 0; trial < 50; ++trial) {
-    ClaimPool pool{LoopParams()};
+    ClaimPool pool(LoopParams(), LoopParams().confirmations);
     const Eigen::Isometry3d pose = random.pose(3.0);
     pool.add(claimOf(7, pose));
     EXPECT_TRUE(pool.agreed().empty()) << "one keyframe proves nothing";
@@ -39,7 +39,7 @@ TEST(ClaimPool, BelievesWhatSeveralKeyframesSay) {
 }
 
 TEST(ClaimPool, IsSilentWhereKeyframesContradictEachOther) {
-  ClaimPool pool{LoopParams()};
+  ClaimPool pool(LoopParams(), LoopParams().confirmations);
   const Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
   for (const int keyframe : {1, 2}) {
     pool.add(claimOf(keyframe, pose));
@@ -56,7 +56,7 @@ TEST(ClaimPool, OneKeyframeIsEnoughIfNoOtherPoseComesNear) {
   test::Random random(4);
   const Eigen::Isometry3d pose = random.pose(3.0);
   for (const double clarity : {0.8, 0.9}) {
-    ClaimPool pool{LoopParams()};
+    ClaimPool pool(LoopParams(), LoopParams().confirmations);
     PlaceClaim claim = claimOf(1, pose);
     claim.clarity = clarity;
     pool.add(claim);
@@ -68,7 +68,7 @@ TEST(ClaimPool, OneKeyframeIsEnoughIfNoOtherPoseComesNear) {
 
 TEST(ClaimPool, ErrorsThatDoNotAgreeAreNoRivals) {
   test::Random random(2);
-  ClaimPool pool{LoopParams()};
+  ClaimPool pool(LoopParams(), LoopParams().confirmations);
   const Eigen::Isometry3d pose = random.pose(3.0);
   for (int keyframe = 0; keyframe < 10; ++keyframe) pool.add(claimOf(keyframe, random.pose(3.0)));
   EXPECT_TRUE(pool.agreed().empty());
@@ -107,7 +107,7 @@ TEST(PlaceClaim, SeenFromOtherIsTheSameMeasurement) {
 TEST(ClaimPool, ComparesPosesWhereTheClaimWasMade) {
   // 1.5° are within the tolerance of the rotation but move a place 5 m away by 13 cm.
   const Eigen::Isometry3d turn(Eigen::AngleAxisd(degToRad(1.5), Eigen::Vector3d::UnitZ()));
-  ClaimPool pool{LoopParams()};
+  ClaimPool pool(LoopParams(), LoopParams().confirmations);
   pool.add(claimOf(1, Eigen::Isometry3d::Identity()));
   pool.add(claimOf(2, turn));
   EXPECT_TRUE(pool.agreed().empty());
@@ -115,7 +115,7 @@ TEST(ClaimPool, ComparesPosesWhereTheClaimWasMade) {
 
 TEST(ClaimPool, ForgetsWhatItIsTold) {
   const auto old = [](const PlaceClaim& claim) { return claim.keyframe_b < 2; };
-  ClaimPool pool{LoopParams()};
+  ClaimPool pool(LoopParams(), LoopParams().confirmations);
   pool.add(claimOf(1, Eigen::Isometry3d::Identity()));
   pool.forget(old);
   EXPECT_TRUE(pool.empty());

@@ -129,9 +129,9 @@ TEST(JoinParts, ClaimsThatMotionDeniesTogetherNeedTwiceAsManyKeyframes) {
   // The second part sees the one room, the third the other. From the one to the other the body went
   // as the first part has it, or elsewhere: then one of both rooms is another like it.
   for (const bool elsewhere : {false, true}) {
-    for (const int scans : {8, 16}) {
+    for (const int scans : {12, 32}) {
       std::vector<MapPart> parts = {partOf(room, 0, 0, 16), partOf(room, 1, 400, scans),
-                                    partOf(other, 2, 600, 16)};
+                                    partOf(other, 2, 600, 32)};
       append(partOf(other, 0, 200, 16), parts[0]);
       const int last = 400 + scans - 1;
       ExpectedBeginning beginning;
@@ -144,7 +144,7 @@ TEST(JoinParts, ClaimsThatMotionDeniesTogetherNeedTwiceAsManyKeyframes) {
       beginning.information = Matrix6d::Identity() / 0.04;
       parts[2].history.beginnings = {beginning};
       joinParts(parts, MapperParams());
-      EXPECT_EQ(parts.size(), !elsewhere ? 1U : scans == 16 ? 3U : 2U) << elsewhere << scans;
+      EXPECT_EQ(parts.size(), !elsewhere ? 1U : scans == 32 ? 3U : 2U) << elsewhere << scans;
     }
   }
 }

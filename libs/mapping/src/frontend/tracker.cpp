@@ -171,7 +171,8 @@ bool Tracker::surprises(const PosePrior& predicted, const ScanFeatures& scan,
                         const Keyframe& newest) const {
   const double max_drift = params_.frontend.max_drift_translation;
   return positionVariance(predicted) <= max_drift * max_drift &&
-         contradicts(predicted.map_from_body, scan, newest);
+         verified(predicted.map_from_body, scan, newest, params_).conflict() >
+             params_.frontend.surprising_conflict;
 }
 
 /// Little structure beside a bare wall can lead registration off along the wall. What motion calls

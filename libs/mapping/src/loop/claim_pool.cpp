@@ -58,7 +58,7 @@ std::vector<PlaceClaim> ClaimPool::agreed() const {
   const bool certain = std::any_of(best.begin(), best.end(), [&](const PlaceClaim& c) {
     return c.clarity >= params_.certain_clarity;
   });
-  if (!certain && most < static_cast<std::size_t>(params_.confirmations)) return {};
+  if (!certain && most < static_cast<std::size_t>(confirmations_)) return {};
   std::vector<PlaceClaim> others;
   std::copy_if(claims_.begin(), claims_.end(), std::back_inserter(others),
                [&](const PlaceClaim& other) { return !agree(best.front(), other); });

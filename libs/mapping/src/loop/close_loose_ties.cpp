@@ -52,7 +52,7 @@ std::map<std::pair<int, int>, ClaimPool> claimsBetween(const MapState& map, cons
     };
     for (const PlaceClaim& claim : loopClaims(map, static_cast<int>(k), elsewhere, params)) {
       const std::pair<int, int> between(sets[Index(claim.keyframe_a)], sets[k]);
-      pools.try_emplace(between, params.loop).first->second.add(claim);
+      pools.try_emplace(between, params.loop, params.loop.confirmations).first->second.add(claim);
     }
   }
   return pools;

@@ -150,7 +150,8 @@ class Joiner {
   std::vector<SharedClaim> agreements() const {
     std::map<std::pair<Index, Index>, ClaimPool> pools;
     for (const PartClaim& c : claims_)
-      pools.try_emplace({c.a, c.b}, params_.loop).first->second.add(c.claim);
+      pools.try_emplace({c.a, c.b}, params_.loop, params_.loop.join_confirmations)
+          .first->second.add(c.claim);
     std::vector<SharedClaim> result;
     for (const auto& [between, pool] : pools) {
       std::vector<PlaceClaim> agreed = pool.agreed();

@@ -21,6 +21,7 @@ struct FrontendParams {
   double odometry_noise_rotation = degToRad(0.2);
   double min_overlap = 0.3;
   double doubtful_overlap = 0.6;
+  double surprising_conflict = 0.2;
   double max_jump = 6.0;
   double max_drift_translation = 0.15;
   double max_drift_rotation = degToRad(3.0);
@@ -49,6 +50,11 @@ struct FrontendParams {
     f(p.doubtful_overlap,
       Field{"doubtful_overlap", "", 0.0, 1.0,
             "if a smaller share agrees, the last pose is tried beside the prediction"});
+    f(p.surprising_conflict,
+      Field{
+          "surprising_conflict", "", 0.0, 1.0,
+          "a body may have been carried off if so much of what speaks stands, where motion expects "
+          "the scan, in free space"});
     f(p.max_jump,
       Field{"max_jump", "", 1.0, 1e6,
             "and lost if it moved since the last scan by so many times the typical speeds"});

@@ -40,7 +40,9 @@ std::size_t claimantsOf(const std::vector<PlaceClaim>& claims);
 /// agree.
 class ClaimPool {
  public:
-  explicit ClaimPool(const LoopParams& params) : params_(params) {}
+  /// \param confirmations different keyframes that must agree
+  ClaimPool(const LoopParams& params, int confirmations)
+      : params_(params), confirmations_(confirmations) {}
 
   void add(const PlaceClaim& claim) { claims_.push_back(claim); }
   /// Drops the claims for which `unwanted` is true.
@@ -60,6 +62,7 @@ class ClaimPool {
   bool agree(const PlaceClaim& x, const PlaceClaim& y) const;
   std::vector<PlaceClaim> largestGroup(const std::vector<PlaceClaim>& claims) const;
   LoopParams params_;
+  int confirmations_;
   std::vector<PlaceClaim> claims_;
 };
 

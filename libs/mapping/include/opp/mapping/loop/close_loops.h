@@ -27,7 +27,8 @@ void tie(const PlaceClaim& claim, const LoopParams& params, MapState& map);
 /// optimized as a whole, and a loop that the optimization does not believe is taken out again.
 class LoopCloser {
  public:
-  explicit LoopCloser(const MapperParams& params) : params_(params), claims_(params.loop) {}
+  explicit LoopCloser(const MapperParams& params)
+      : params_(params), claims_(params.loop, params.loop.confirmations) {}
 
   /// True if a loop was closed: poses of all keyframes may have changed.
   bool close(MapState& map);

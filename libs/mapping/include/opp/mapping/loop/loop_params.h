@@ -26,6 +26,7 @@ struct LoopParams {
   int place_keyframes = 6;
   double min_overlap = 0.5;
   int confirmations = 2;
+  int join_confirmations = 3;
   double certain_clarity = 0.85;
   int memory = 15;
   double rival_ratio = 2.0;
@@ -62,6 +63,9 @@ struct LoopParams {
                            "share of a scan that agrees with the place it is said to see"});
     f(p.confirmations, Field{"confirmations", "", 1, 100,
                              "different keyframes that must agree before a place is believed"});
+    f(p.join_confirmations,
+      Field{"join_confirmations", "", 1, 100,
+            "the same before maps are joined: of these no drift limits where they may be"});
     f(p.certain_clarity,
       Field{"certain_clarity", "", 0.0, 1.0,
             "one keyframe is enough if no other pose comes this near (GlobalAlignment::clarity)"});
