@@ -9,19 +9,7 @@
 namespace opp::mapping {
 namespace {
 
-constexpr double kTimeStep = 0.1;
-
-ScanFeatures scanOf(std::uint64_t room, int step, const Eigen::Isometry3d& scene_from_body) {
-  test::SyntheticOptions options;
-  options.spacing = 0.08;
-  options.sigma = 0.003;
-  options.seed = static_cast<std::uint64_t>(step);
-  ScanFeatures scan =
-      test::trueFeatures(test::sampleScene(test::furnishedRoom(room), scene_from_body.translation(),
-                                           scene_from_body.inverse(), options));
-  scan.timestamp = kTimeStep * step;
-  return scan;
-}
+constexpr double kTimeStep = test::kTimeStep;
 
 Eigen::Isometry3d at(double x) {
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
@@ -35,7 +23,7 @@ LostScan lostScan(std::uint64_t room, int step, double x) {
   predicted.map_from_body = at(0.0);
   const double sigma = 0.06 * step;
   predicted.information.diagonal().setConstant(1.0 / (sigma * sigma));
-  return {scanOf(room, step, at(x)), predicted};
+  return {test::scanOfRoom(room, step, at(x)), predicted};
 }
 
 constexpr int kRooms = 10;
@@ -45,11 +33,13 @@ TEST(LostScans, DenyThatABodyLeaptAsSoonAsItWasLost) {
     // What is found at 0.4 m stood there all the time, 0.1 s after it was seen at 0.
     std::vector<LostScan> lost;
     for (int step = 1; step <= 4; ++step) lost.push_back(lostScan(room, step, 0.4));
-    EXPECT_TRUE(deniedByLostScans(lost, scanOf(room, 5, at(0.4)), at(0.4), MapperParams()))
+    EXPECT_TRUE(
+        deniedByLostScans(lost, test::scanOfRoom(room, 5, at(0.4)), at(0.4), MapperParams()))
         << "room " << room;
     // The last of them alone cannot tell.
     lost.erase(lost.begin(), lost.begin() + 3);
-    EXPECT_FALSE(deniedByLostScans(lost, scanOf(room, 5, at(0.4)), at(0.4), MapperParams()))
+    EXPECT_FALSE(
+        deniedByLostScans(lost, test::scanOfRoom(room, 5, at(0.4)), at(0.4), MapperParams()))
         << "room " << room;
   }
 }
@@ -58,7 +48,8 @@ TEST(LostScans, AllowTheWayThatABodyTakes) {
   for (std::uint64_t room = 0; room < kRooms; ++room) {
     std::vector<LostScan> lost;
     for (int step = 1; step <= 4; ++step) lost.push_back(lostScan(room, step, 0.08 * step));
-    EXPECT_FALSE(deniedByLostScans(lost, scanOf(room, 5, at(0.4)), at(0.4), MapperParams()))
+    EXPECT_FALSE(
+        deniedByLostScans(lost, test::scanOfRoom(room, 5, at(0.4)), at(0.4), MapperParams()))
         << "room " << room;
   }
 }
@@ -72,13 +63,14 @@ TEST(LostScans, WhatShowsSomethingElseDeniesNothing) {
       for (Eigen::Vector3f& point : lost.back().scan.cloud_in_body.points)
         point = 0.3F * point.normalized();
     }
-    EXPECT_FALSE(deniedByLostScans(lost, scanOf(room, 5, at(0.4)), at(0.4), MapperParams()))
+    EXPECT_FALSE(
+        deniedByLostScans(lost, test::scanOfRoom(room, 5, at(0.4)), at(0.4), MapperParams()))
         << "room " << room;
   }
 }
 
 TEST(LostScans, NoneDenyNothing) {
-  EXPECT_FALSE(deniedByLostScans({}, scanOf(1, 1, at(0.0)), at(0.0), MapperParams()));
+  EXPECT_FALSE(deniedByLostScans({}, test::scanOfRoom(1, 1, at(0.0)), at(0.0), MapperParams()));
 }
 
 }  // namespace

@@ -16,24 +16,12 @@
 namespace opp::mapping {
 namespace {
 
-constexpr double kTimeStep = 0.1;
+constexpr double kTimeStep = test::kTimeStep;
 
 Eigen::Isometry3d poseAt(double yaw, double x) {
   Eigen::Isometry3d pose(Eigen::AngleAxisd(yaw, Eigen::Vector3d::UnitZ()));
   pose.translation() = Eigen::Vector3d(x, 0.1, 1.2);
   return pose;
-}
-
-ScanFeatures scanOf(std::uint64_t room, int step, const Eigen::Isometry3d& scene_from_body) {
-  test::SyntheticOptions options;
-  options.spacing = 0.08;
-  options.sigma = 0.003;
-  options.seed = static_cast<std::uint64_t>(step);
-  ScanFeatures scan =
-      test::trueFeatures(test::sampleScene(test::furnishedRoom(room), scene_from_body.translation(),
-                                           scene_from_body.inverse(), options));
-  scan.timestamp = kTimeStep * step;
-  return scan;
 }
 
 /// A map of one keyframe and a tracker that starts there.
@@ -46,7 +34,7 @@ Started startAt(std::uint64_t room, const Eigen::Isometry3d& pose) {
   Started started;
   MatchResult match;
   match.map_from_body = pose;
-  insertKeyframe(scanOf(room, 0, pose), match, SensorModel(), started.map);
+  insertKeyframe(test::scanOfRoom(room, 0, pose), match, SensorModel(), started.map);
   started.tracker.start({0.0, pose}, std::nullopt);
   started.tracker.setLocalMap(localMapOf(started.map, {0}, MapperParams()));
   return started;
@@ -54,7 +42,8 @@ Started startAt(std::uint64_t room, const Eigen::Isometry3d& pose) {
 
 TEST(Tracker, WithoutAMapNothingIsLocalized) {
   Tracker tracker{MapperParams()};
-  const TrackResult result = tracker.track(scanOf(1, 0, poseAt(0.0, 0.0)), std::nullopt, {});
+  const TrackResult result =
+      tracker.track(test::scanOfRoom(1, 0, poseAt(0.0, 0.0)), std::nullopt, {});
   EXPECT_EQ(result.outcome, TrackOutcome::kNoMap);
   EXPECT_FALSE(result.localized());
   EXPECT_FALSE(result.wants_keyframe);
@@ -70,7 +59,7 @@ TEST(Tracker, LocalizesTheNextScanInManyRooms) {
     Started started = startAt(room, poseAt(0.0, 0.0));
     const Eigen::Isometry3d truth = poseAt(0.05, 0.06);
     const TrackResult result =
-        started.tracker.track(scanOf(room, 1, truth), std::nullopt, started.map);
+        started.tracker.track(test::scanOfRoom(room, 1, truth), std::nullopt, started.map);
     ASSERT_TRUE(result.localized()) << "room " << room;
     EXPECT_FALSE(result.wants_keyframe) << "room " << room;
     const Vector6d error = difference(truth, result.match.map_from_body);
@@ -84,8 +73,8 @@ TEST(Tracker, WantsAKeyframeOnceTheBodyLooksElsewhere) {
   Started started = startAt(2, poseAt(0.0, 0.0));
   bool wanted = false;
   for (int step = 1; step <= 4; ++step) {
-    const TrackResult result =
-        started.tracker.track(scanOf(2, step, poseAt(0.12 * step, 0.0)), std::nullopt, started.map);
+    const TrackResult result = started.tracker.track(
+        test::scanOfRoom(2, step, poseAt(0.12 * step, 0.0)), std::nullopt, started.map);
     ASSERT_TRUE(result.localized());
     // keyframe_rotation is 25° = 0.436 rad: passed at the fourth step.
     EXPECT_EQ(result.wants_keyframe, step == 4);
@@ -97,7 +86,7 @@ TEST(Tracker, WantsAKeyframeOnceTheBodyLooksElsewhere) {
 TEST(Tracker, AScanOfAnotherPlaceIsLostAndHarmless) {
   Started started = startAt(3, poseAt(0.0, 0.0));
   // One small sphere of outward normals agrees with no room.
-  ScanFeatures elsewhere = scanOf(3, 1, poseAt(0.0, 0.0));
+  ScanFeatures elsewhere = test::scanOfRoom(3, 1, poseAt(0.0, 0.0));
   test::Random random(1);
   for (std::size_t i = 0; i < elsewhere.cloud_in_body.size(); ++i) {
     elsewhere.cloud_in_body.normals[i] = random.unitVector().cast<float>();
@@ -109,8 +98,9 @@ TEST(Tracker, AScanOfAnotherPlaceIsLostAndHarmless) {
   elsewhere.primitives_in_body = none;
   EXPECT_EQ(started.tracker.track(elsewhere, std::nullopt, started.map).outcome,
             TrackOutcome::kLittleOverlap);
-  EXPECT_TRUE(started.tracker.track(scanOf(3, 2, poseAt(0.05, 0.0)), std::nullopt, started.map)
-                  .localized());
+  EXPECT_TRUE(
+      started.tracker.track(test::scanOfRoom(3, 2, poseAt(0.05, 0.0)), std::nullopt, started.map)
+          .localized());
 }
 
 TEST(Tracker, ExpectsABodyThatSawNothingButNotOneThatWasMoved) {
@@ -124,7 +114,7 @@ TEST(Tracker, ExpectsABodyThatSawNothingButNotOneThatWasMoved) {
     EXPECT_LT(difference(pose, expected->map_from_body).norm(), 1e-9) << "it stood still";
 
     Started moved = startAt(room, pose);
-    const ScanFeatures elsewhere = scanOf(room + 20, 1, poseAt(2.5, 0.8));
+    const ScanFeatures elsewhere = test::scanOfRoom(room + 20, 1, poseAt(2.5, 0.8));
     if (moved.tracker.track(elsewhere, std::nullopt, moved.map).localized()) continue;
     ++lost;
     EXPECT_FALSE(moved.tracker.expected(3.0 * kTimeStep, std::nullopt)) << "room " << room;
@@ -143,7 +133,8 @@ TEST(Tracker, FollowsAMapThatMoved) {
   started.tracker.setLocalMap(localMapOf(started.map, {0}, MapperParams()));
   started.tracker.correct(keyframe.map_from_body);
   const Eigen::Isometry3d truth = poseAt(0.05, 0.06);
-  const TrackResult result = started.tracker.track(scanOf(4, 1, truth), std::nullopt, started.map);
+  const TrackResult result =
+      started.tracker.track(test::scanOfRoom(4, 1, truth), std::nullopt, started.map);
   ASSERT_TRUE(result.localized());
   const Vector6d error = difference(new_from_old * truth, result.match.map_from_body);
   EXPECT_LT(error.head<3>().norm(), 2e-3);
@@ -251,7 +242,7 @@ TEST(Tracker, FollowsABodyPastABareWallAndFindsTheWayOn) {
 
 TEST(Tracker, OncePositionIsForgottenNothingIsLookedFor) {
   Started started = startAt(1, poseAt(0.0, 0.0));
-  ScanFeatures later = scanOf(1, 1, poseAt(0.0, 0.0));
+  ScanFeatures later = test::scanOfRoom(1, 1, poseAt(0.0, 0.0));
   later.timestamp = 30.0;
   EXPECT_EQ(started.tracker.track(later, std::nullopt, started.map).outcome,
             TrackOutcome::kForgotten);
@@ -274,7 +265,7 @@ TEST(Tracker, OdometryCarriesABareWall) {
 TEST(Tracker, WhatStandsWhereTheMapWasLookedThroughSpeaksAgainstAPose) {
   for (std::uint64_t room = 0; room < 5; ++room) {
     Started started = startAt(room, poseAt(0.0, 0.0));
-    ScanFeatures scan = scanOf(room, 1, poseAt(0.0, 0.0));
+    ScanFeatures scan = test::scanOfRoom(room, 1, poseAt(0.0, 0.0));
     test::Random random(room);
     for (std::size_t i = 0; i < scan.cloud_in_body.size(); ++i) {
       if (random.uniform(0.0, 1.0) < 0.45) continue;
@@ -292,7 +283,7 @@ TEST(Tracker, WhatStandsWhereTheMapWasLookedThroughSpeaksAgainstAPose) {
 TEST(Tracker, DoesNotBelieveAJumpThatNoBodyMakes) {
   for (std::uint64_t room = 0; room < 5; ++room) {
     const Eigen::Isometry3d moved = poseAt(0.1, 0.4);
-    ScanFeatures scan = scanOf(room, 1, moved);
+    ScanFeatures scan = test::scanOfRoom(room, 1, moved);
     scan.timestamp = 0.5;
     Started slow = startAt(room, poseAt(0.0, 0.0));
     const TrackResult walked = slow.tracker.track(scan, std::nullopt, slow.map);
@@ -310,8 +301,9 @@ TEST(Tracker, WhatMotionCallsImpossibleMustExplainMostOfTheScan) {
       for (const double clutter : {0.0, 0.5}) {
         Started started = startAt(room, poseAt(0.0, 0.0));
         for (int step = 1; step <= 5; ++step)
-          started.tracker.track(scanOf(room, step, poseAt(0.0, 0.0)), std::nullopt, started.map);
-        ScanFeatures scan = scanOf(room, 6, poseAt(0.0, shift));
+          started.tracker.track(test::scanOfRoom(room, step, poseAt(0.0, 0.0)), std::nullopt,
+                                started.map);
+        ScanFeatures scan = test::scanOfRoom(room, 6, poseAt(0.0, shift));
         test::Random random(room);
         // Off by some centimetres: too much to agree, too little to stand in free space.
         for (Eigen::Vector3f& point : scan.cloud_in_body.points) {
@@ -335,13 +327,14 @@ TEST(Tracker, ABodyThatWasCarriedOffIsNotFoundByOneScan) {
     for (const double shift : {0.0, 0.12}) {
       Started started = startAt(room, poseAt(0.0, 0.0));
       for (int step = 1; step <= 5; ++step)
-        started.tracker.track(scanOf(room, step, poseAt(0.0, 0.0)), std::nullopt, started.map);
-      const ScanFeatures elsewhere = scanOf(room + 20, 6, poseAt(2.5, 0.8));
+        started.tracker.track(test::scanOfRoom(room, step, poseAt(0.0, 0.0)), std::nullopt,
+                              started.map);
+      const ScanFeatures elsewhere = test::scanOfRoom(room + 20, 6, poseAt(2.5, 0.8));
       started.tracker.track(elsewhere, std::nullopt, started.map);
       if (started.tracker.expected(7.0 * kTimeStep, std::nullopt)) continue;  // not surprised
       ++surprised;
-      const TrackResult after =
-          started.tracker.track(scanOf(room, 7, poseAt(shift, shift)), std::nullopt, started.map);
+      const TrackResult after = started.tracker.track(
+          test::scanOfRoom(room, 7, poseAt(shift, shift)), std::nullopt, started.map);
       EXPECT_EQ(after.localized(), shift == 0.0) << "room " << room << ": what hid the map passed";
     }
   }

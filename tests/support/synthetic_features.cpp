@@ -146,4 +146,16 @@ mapping::ScanFeatures trueFeatures(const SyntheticScene& scene) {
   return features;
 }
 
+mapping::ScanFeatures scanOfRoom(std::uint64_t room, int step,
+                                 const Eigen::Isometry3d& scene_from_body) {
+  SyntheticOptions options;
+  options.spacing = 0.08;
+  options.sigma = 0.003;
+  options.seed = static_cast<std::uint64_t>(step);
+  mapping::ScanFeatures scan = trueFeatures(sampleScene(
+      furnishedRoom(room), scene_from_body.translation(), scene_from_body.inverse(), options));
+  scan.timestamp = kTimeStep * step;
+  return scan;
+}
+
 }  // namespace opp::test

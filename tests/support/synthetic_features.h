@@ -16,4 +16,10 @@ Primitives truePrimitives(const SyntheticScene& scene);
 /// A scan with its cloud and `truePrimitives`.
 mapping::ScanFeatures trueFeatures(const SyntheticScene& scene);
 
+constexpr double kTimeStep = 0.1;  ///< of `scanOfRoom` [s]
+
+/// The `step`-th scan, with a noise of 3 mm, of a body in `furnishedRoom(room)`.
+mapping::ScanFeatures scanOfRoom(std::uint64_t room, int step,
+                                 const Eigen::Isometry3d& scene_from_body);
+
 }  // namespace opp::test

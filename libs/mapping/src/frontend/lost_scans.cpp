@@ -10,16 +10,6 @@
 #include <cmath>
 
 namespace opp::mapping {
-namespace {
-
-bool isKnown(const Matrix6d& covariance, const FrontendParams& params) {
-  return largestVariance(covariance.topLeftCorner<3, 3>()) <=
-             params.max_drift_rotation * params.max_drift_rotation &&
-         largestVariance(covariance.bottomRightCorner<3, 3>()) <=
-             params.max_drift_translation * params.max_drift_translation;
-}
-
-}  // namespace
 
 bool deniedByLostScans(const std::vector<LostScan>& lost, const ScanFeatures& found,
                        const Eigen::Isometry3d& map_from_body, const MapperParams& params) {

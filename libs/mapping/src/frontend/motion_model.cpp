@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "opp/mapping/frontend/motion_model.h"
 
+#include "registration/observability.h"
+
 #include <Eigen/Cholesky>
 
 #include <algorithm>
@@ -24,6 +26,13 @@ constexpr double kMinTimeStep = 1e-3;
 constexpr double kAccelerationTime = 0.1;
 
 }  // namespace
+
+bool isKnown(const Matrix6d& covariance, const FrontendParams& params) {
+  return largestVariance(covariance.topLeftCorner<3, 3>()) <=
+             params.max_drift_rotation * params.max_drift_rotation &&
+         largestVariance(covariance.bottomRightCorner<3, 3>()) <=
+             params.max_drift_translation * params.max_drift_translation;
+}
 
 Vector6d typicalMotion(double seconds, const FrontendParams& params) {
   return (perKind(params.angular_speed, params.speed) * std::max(seconds, kMinTimeStep))

@@ -152,13 +152,8 @@ TrackOutcome Tracker::outcomeOf(const MatchResult& match, const ScanFeatures& sc
   // A wrong pose can agree with a good part of a map: the floor fits at many places.
   if (!convincing(match) && contradicts(match.map_from_body, scan, newest))
     return TrackOutcome::kContradicted;
-  const double max_rotation = params_.frontend.max_drift_rotation;
-  const double max_translation = params_.frontend.max_drift_translation;
-  const bool known =
-      largestVariance(match.covariance.topLeftCorner<3, 3>()) <= max_rotation * max_rotation &&
-      largestVariance(match.covariance.bottomRightCorner<3, 3>()) <=
-          max_translation * max_translation;
-  return known ? TrackOutcome::kLocalized : TrackOutcome::kUnobserved;
+  return isKnown(match.covariance, params_.frontend) ? TrackOutcome::kLocalized
+                                                     : TrackOutcome::kUnobserved;
 }
 
 bool Tracker::contradicts(const Eigen::Isometry3d& map_from_body, const ScanFeatures& scan,

@@ -2,33 +2,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "opp/mapping/loop/claim_pool.h"
 
+#include "registration/observability.h"
+
 #include <algorithm>
 #include <set>
 #include <utility>
 
 namespace opp::mapping {
-namespace {
-
-/// (ω, v) of the inverse of a pose whose (ω, v) is given, see `retract`.
-Matrix6d inverseJacobian(const Eigen::Isometry3d& pose) {
-  const Eigen::Vector3d t = pose.translation();
-  Eigen::Matrix3d cross;
-  cross << 0.0, -t.z(), t.y(),  //
-      t.z(), 0.0, -t.x(),       //
-      -t.y(), t.x(), 0.0;
-  const Eigen::Matrix3d turned = -pose.linear().transpose();
-  Matrix6d jacobian = Matrix6d::Zero();
-  jacobian << turned, Eigen::Matrix3d::Zero(), turned * cross, turned;
-  return jacobian;
-}
-
-}  // namespace
-
 PlaceClaim seenFromOther(const PlaceClaim& claim) {
   PlaceClaim result = claim;
   std::swap(result.keyframe_a, result.keyframe_b);
   result.keyframe_a_from_b = claim.keyframe_a_from_b.inverse();
-  const Matrix6d back = inverseJacobian(result.keyframe_a_from_b);
+  // (ω, v) of a pose makes (−Rᵀω, −Rᵀ(v − ω × t)) of its inverse, see `retract`.
+  const Eigen::Isometry3d& b_from_a = result.keyframe_a_from_b;
+  const Matrix6d back = -turned(b_from_a.linear().transpose()) * movedBy(-b_from_a.translation());
   result.information = back.transpose() * claim.information * back;
   result.map_a_from_map_b = claim.map_a_from_map_b.inverse();
   result.place_in_map_b = claim.map_a_from_map_b * claim.place_in_map_b;
@@ -70,11 +57,15 @@ std::vector<PlaceClaim> ClaimPool::agreed() const {
 /// The claim that most keyframes agree with and these, in order of arrival but for the first.
 std::vector<PlaceClaim> ClaimPool::largestGroup(const std::vector<PlaceClaim>& claims) const {
   std::vector<PlaceClaim> largest;
+  std::size_t most = 0;
   for (const PlaceClaim& claim : claims) {
     std::vector<PlaceClaim> group{claim};
     std::copy_if(claims.begin(), claims.end(), std::back_inserter(group),
                  [&](const PlaceClaim& other) { return &other != &claim && agree(claim, other); });
-    if (claimantsOf(group) > claimantsOf(largest)) largest = std::move(group);
+    const std::size_t claimants = claimantsOf(group);
+    if (claimants <= most) continue;
+    most = claimants;
+    largest = std::move(group);
   }
   return largest;
 }

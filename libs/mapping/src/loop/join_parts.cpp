@@ -23,10 +23,6 @@ using Index = std::size_t;
 /// Keyframes of a part that look for their places, about.
 constexpr int kClaimants = 40;
 
-bool haveCommon(const std::set<int>& a, const std::set<int>& b) {
-  return std::any_of(a.begin(), a.end(), [&](int id) { return b.count(id) > 0; });
-}
-
 /// A claim about two parts, by their indices; `a` comes before `b`.
 struct PartClaim {
   Index a = 0, b = 0;
@@ -70,7 +66,7 @@ class Joiner {
   std::vector<Candidate> candidates(Index claimant, const Primitives& primitives) const {
     std::vector<Candidate> ranked;
     for (Index p = 0; p < claimant; ++p) {
-      if (haveCommon(parts_[p].history.origins, parts_[claimant].history.origins)) continue;
+      if (parts_[p].history.sharesOrigin(parts_[claimant].history)) continue;
       const std::vector<double> likeness = parts_[p].index.likeness(primitives);
       for (Index k = 0; k < likeness.size(); ++k) {
         ranked.push_back({likeness[k], p, static_cast<int>(k)});

@@ -69,6 +69,11 @@ bool reachable(const MapState& a, const MapState& b, const Eigen::Isometry3d& a_
 
 }  // namespace
 
+bool PartHistory::sharesOrigin(const PartHistory& other) const {
+  return std::any_of(origins.begin(), origins.end(),
+                     [&](int id) { return other.origins.count(id) > 0; });
+}
+
 void PartHistory::merge(const PartHistory& other) {
   origins.insert(other.origins.begin(), other.origins.end());
   for (const ExpectedBeginning& beginning : other.beginnings) expect(beginning);

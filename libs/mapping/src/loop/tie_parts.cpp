@@ -58,13 +58,8 @@ Eigen::Isometry3d aFromB(const Tie& tie, const MapState& a, const MapState& b) {
   return tie.first_in_a ? first_from_second_map : first_from_second_map.inverse();
 }
 
-bool haveCommonOrigin(const MapPart& a, const MapPart& b) {
-  return std::any_of(a.history.origins.begin(), a.history.origins.end(),
-                     [&](int id) { return b.history.origins.count(id) > 0; });
-}
-
 bool tieTwo(MapPart& a, MapPart& b) {
-  if (!haveCommonOrigin(a, b)) return false;
+  if (!a.history.sharesOrigin(b.history)) return false;
   std::vector<Tie> ties = tiesBetween(a, b);
   if (ties.empty()) return false;
   const auto firmest = std::min_element(

@@ -18,15 +18,6 @@ namespace {
 
 using Index = std::size_t;
 
-/// (ω, v) of a body whose v is given at one point, with v at another that is `offset` away.
-Matrix6d movedBy(const Eigen::Vector3d& offset) {
-  Matrix6d moved = Matrix6d::Identity();
-  moved.bottomLeftCorner<3, 3>() << 0.0, offset.z(), -offset.y(),  //
-      -offset.z(), 0.0, offset.x(),                                //
-      offset.y(), -offset.x(), 0.0;
-  return moved;
-}
-
 /// Sets of keyframes that do not move against each other, and what ties the sets.
 class TiedSets {
  public:

@@ -30,6 +30,14 @@ Matrix6d withoutNoise(const Matrix6d& hessian, const Matrix6d& noise, double ran
   return units.cwiseInverse().asDiagonal() * positive * units.cwiseInverse().asDiagonal();
 }
 
+Matrix6d movedBy(const Eigen::Vector3d& offset) {
+  Matrix6d moved = Matrix6d::Identity();
+  moved.bottomLeftCorner<3, 3>() << 0.0, offset.z(), -offset.y(),  //
+      -offset.z(), 0.0, offset.x(),                                //
+      offset.y(), -offset.x(), 0.0;
+  return moved;
+}
+
 double largestVariance(const Eigen::Matrix3d& covariance) {
   return Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(covariance, Eigen::EigenvaluesOnly)
       .eigenvalues()[2];

@@ -59,6 +59,9 @@ inline Matrix6d turned(const Eigen::Matrix3d& to_from) {
   return result;
 }
 
+/// (ω, v) of a body whose v is given at one point, with v at another that is `offset` away.
+Matrix6d movedBy(const Eigen::Vector3d& offset);
+
 /// Variance in the worst direction.
 double largestVariance(const Eigen::Matrix3d& covariance);
 

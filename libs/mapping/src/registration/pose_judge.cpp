@@ -54,8 +54,9 @@ GlobalAlignment PoseJudge::judge(const std::vector<Candidate>& candidates) const
   answer.corner_matches = cornerMatches(best.pose.target_from_source);
   answer.observed_dof = observedDof(best);
   answer.clarity = clarityOfBest(candidates);
-  answer.confirmation = confirmationOf(target_, source_, best).share();
-  answer.outcome = outcome(candidates, answer);
+  const Confirmation confirmation = confirmationOf(target_, source_, best);
+  answer.confirmation = confirmation.share();
+  answer.outcome = outcome(candidates, confirmation, answer);
   if (answer.outcome != AlignmentOutcome::kAligned) return answer;
   answer.target_from_source = best.pose.target_from_source;
   answer.covariance = covarianceAt(target_, source_, answer.target_from_source, params_);
@@ -63,6 +64,7 @@ GlobalAlignment PoseJudge::judge(const std::vector<Candidate>& candidates) const
 }
 
 AlignmentOutcome PoseJudge::outcome(const std::vector<Candidate>& candidates,
+                                    const Confirmation& confirmation,
                                     const GlobalAlignment& answer) const {
   const Candidate& best = candidates.front();
   if (best.score <= 0.0 || answer.overlap < params_.min_overlap ||
@@ -70,20 +72,21 @@ AlignmentOutcome PoseJudge::outcome(const std::vector<Candidate>& candidates,
     return AlignmentOutcome::kNoOverlap;
   }
   if (answer.observed_dof < 6) return AlignmentOutcome::kInsufficient;
-  const bool ambiguous = std::any_of(candidates.begin() + 1, candidates.end(),
-                                     [&](const Candidate& other) { return rivals(best, other); });
+  const bool ambiguous =
+      std::any_of(candidates.begin() + 1, candidates.end(),
+                  [&](const Candidate& other) { return rivals(best, confirmation, other); });
   return ambiguous ? AlignmentOutcome::kAmbiguous : AlignmentOutcome::kAligned;
 }
 
 /// Does the other pose explain the scans about as well? Three surfaces can be laid on three others
 /// somewhere in any two rooms, so what agrees there is no evidence; a pose that has far less than
 /// the best beyond them has to be nearly as good in all to be a rival.
-bool PoseJudge::rivals(const Candidate& best, const Candidate& other) const {
+bool PoseJudge::rivals(const Candidate& best, const Confirmation& confirmation,
+                       const Candidate& other) const {
   const double advantage = clarity(best.verification, other.verification);
   if (advantage >= params_.min_clarity) return false;
   if (advantage < kWeakClarity * params_.min_clarity) return true;
-  return confirmationOf(target_, source_, other).confirming >=
-         kWeakShare * confirmationOf(target_, source_, best).confirming;
+  return confirmationOf(target_, source_, other).confirming >= kWeakShare * confirmation.confirming;
 }
 
 /// Degrees of freedom that enough samples see and in which the best pose cannot be moved by a

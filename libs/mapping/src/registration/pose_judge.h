@@ -48,8 +48,10 @@ class PoseJudge {
 
  private:
   AlignmentOutcome outcome(const std::vector<Candidate>& candidates,
-                           const GlobalAlignment& answer) const;
-  bool rivals(const Candidate& best, const Candidate& other) const;
+                           const Confirmation& confirmation, const GlobalAlignment& answer) const;
+  /// \param confirmation of the best
+  bool rivals(const Candidate& best, const Confirmation& confirmation,
+              const Candidate& other) const;
   int observedDof(const Candidate& best) const;
   bool slides(const Candidate& best, const Vector6d& step) const;
   Vector6d units() const;

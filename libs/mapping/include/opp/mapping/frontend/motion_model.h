@@ -14,6 +14,9 @@ namespace opp::mapping {
 /// `retract` [rad², m²]. Positive also for stamps that are equal or run backwards.
 Vector6d typicalMotion(double seconds, const FrontendParams& params);
 
+/// Whether a pose of this covariance of (ω, v) is certain within `max_drift_*` in every direction.
+bool isKnown(const Matrix6d& covariance, const FrontendParams& params);
+
 /// Predicts the next pose: by the rawlog's odometry where there is one, else by constant velocity.
 ///
 /// A Kalman filter of pose and velocity in (ω, v), see `retract`: a direction that scans do not fix

@@ -33,6 +33,7 @@ struct PartHistory {
   /// it proves nothing.
   std::set<ScanId> repeated;
 
+  bool sharesOrigin(const PartHistory& other) const;
   void merge(const PartHistory& other);
   /// Once for each two scans.
   void expect(const ExpectedBeginning& beginning);
