@@ -97,6 +97,29 @@ TEST(JoinParts, BelievesMotionThatDeniesAJoin) {
   }
 }
 
+TEST(JoinParts, BelievesMotionThroughAPartBetween) {
+  const test::Rectangles room = test::furnishedRoom(1);
+  std::vector<MapPart> parts = {partOf(room, 0, 0), partOf(test::furnishedRoom(4), 1, 18, 3),
+                                partOf(room, 2, 40)};
+  ExpectedBeginning between, beginning;
+  between.last = {0, 15};
+  between.first = {0, 18};
+  between.last_from_first = poseAt(15).inverse() * poseAt(18);
+  between.information = Matrix6d::Identity() / 0.02;
+  parts[1].history.beginnings = {between};
+  beginning.last = {0, 20};
+  beginning.first = {0, 40};
+  beginning.information = Matrix6d::Identity() / 0.02;
+  for (const double aside : {0.0, 4.0}) {
+    beginning.last_from_first = poseAt(20).inverse() * poseAt(40);
+    beginning.last_from_first.translation().x() += aside;
+    std::vector<MapPart> some = parts;
+    some[2].history.beginnings = {beginning};
+    joinParts(some, MapperParams());
+    EXPECT_EQ(some.size(), aside == 0.0 ? 2U : 3U) << aside;
+  }
+}
+
 TEST(JoinParts, APlaceRecognizedWhereItCannotBeProvesNothing) {
   const test::Rectangles room = test::furnishedRoom(1);
   ExpectedBeginning elsewhere;

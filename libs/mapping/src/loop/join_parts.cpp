@@ -8,6 +8,7 @@
 #include "opp/mapping/loop/join_maps.h"
 #include "opp/mapping/loop/map_conflict.h"
 #include "opp/mapping/loop/match_place.h"
+#include "opp/mapping/loop/motion_between.h"
 #include "opp/mapping/loop/place.h"
 
 #include <algorithm>
@@ -124,9 +125,10 @@ class Joiner {
 
   /// Drops what motion denies, and then all claims about places that have others like them.
   void dropRefuted() {
+    std::map<std::pair<Index, Index>, MotionBetween> motions;
     drop([&](const PartClaim& c) {
-      const bool denied =
-          !motionAllows(parts_[c.a], parts_[c.b], c.claim.map_a_from_map_b, params_);
+      const auto motion = motions.try_emplace({c.a, c.b}, parts_, c.a, c.b, params_).first;
+      const bool denied = !motion->second.allows(c.claim.map_a_from_map_b);
       if (denied) refute(c);
       return denied;
     });
@@ -166,8 +168,8 @@ class Joiner {
       if (shared != y.a && shared != y.b) continue;
       const Index p = x.a + x.b - shared, q = y.a + y.b - shared;
       if (p == q) return false;
-      return !motionAllows(parts_[p], parts_[q], x.from(shared).inverse() * y.from(shared),
-                           params_);
+      return !MotionBetween(parts_, p, q, params_)
+                  .allows(x.from(shared).inverse() * y.from(shared));
     }
     return false;
   }

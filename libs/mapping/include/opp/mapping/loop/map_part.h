@@ -59,10 +59,4 @@ struct MapPart {
   ConstellationIndex index;  ///< of all keyframes
 };
 
-/// Whether the body can have got from the one part to the other if `a_from_b` is right, each time
-/// that it did: within a session it moves at most at some times its typical speed, and begins a
-/// part where it was expected (`PartHistory::beginnings`). O(scans · (beginnings + log scans)).
-bool motionAllows(const MapPart& a, const MapPart& b, const Eigen::Isometry3d& a_from_b,
-                  const MapperParams& params);
-
 }  // namespace opp::mapping
