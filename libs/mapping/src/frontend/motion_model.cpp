@@ -39,11 +39,18 @@ Vector6d typicalMotion(double seconds, const FrontendParams& params) {
       .cwiseAbs2();
 }
 
+MotionState inFrame(const Eigen::Isometry3d& frame_from_map, const MotionState& state) {
+  MotionState::Covariance turns = MotionState::Covariance::Zero();
+  turns.topLeftCorner<6, 6>() = turns.bottomRightCorner<6, 6>() = turned(frame_from_map.linear());
+  return {frame_from_map * state.map_from_body, turned(frame_from_map.linear()) * state.rate,
+          turns * state.covariance * turns.transpose()};
+}
+
 void MotionModel::start(const StampedPose& pose,
                         const std::optional<Eigen::Isometry3d>& odom_from_body) {
   started_ = true;
   timestamp_ = pose.timestamp;
-  last_ = State{};
+  last_ = MotionState{};
   last_.map_from_body = pose.map_from_body;
   last_.covariance.diagonal().tail<6>() = perKind(params_.angular_speed, params_.speed).cwiseAbs2();
   last_odom_from_body_ = odom_from_body;
@@ -54,7 +61,7 @@ void MotionModel::update(const StampedPose& pose,
                          const std::optional<Eigen::Isometry3d>& odom_from_body,
                          const Matrix6d& information) {
   if (!started_) return start(pose, odom_from_body);
-  State state = stateAt(pose.timestamp, odom_from_body);
+  MotionState state = predictState(pose.timestamp, odom_from_body);
   const Matrix6d before = state.covariance.topLeftCorner<6, 6>();
   const Matrix6d before_inverse = inverse(before);
   const Matrix6d after = inverse(before_inverse + information);
@@ -74,22 +81,18 @@ void MotionModel::update(const StampedPose& pose,
 
 void MotionModel::correct(const Eigen::Isometry3d& last_pose) {
   if (!started_) return;
-  const Eigen::Matrix3d turn = last_pose.linear() * last_.map_from_body.linear().transpose();
-  Matrix12d turns = Matrix12d::Zero();
-  for (int k = 0; k < 12; k += 3) turns.block<3, 3>(k, k) = turn;
-  last_.map_from_body = last_pose;
-  last_.rate = (turns.topLeftCorner<6, 6>() * last_.rate).eval();
-  last_.covariance = (turns * last_.covariance * turns.transpose()).eval();
+  last_ = inFrame(last_pose * last_.map_from_body.inverse(), last_);
+  last_.map_from_body = last_pose;  // without rounding
 }
 
 PosePrior MotionModel::predict(double timestamp,
                                const std::optional<Eigen::Isometry3d>& odom_from_body) const {
   if (!started_) return {};
-  const State state = stateAt(timestamp, odom_from_body);
+  const MotionState state = predictState(timestamp, odom_from_body);
   return {state.map_from_body, inverse(state.covariance.topLeftCorner<6, 6>())};
 }
 
-MotionModel::State MotionModel::stateAt(
+MotionState MotionModel::predictState(
     double timestamp, const std::optional<Eigen::Isometry3d>& odom_from_body) const {
   const double step = std::max(timestamp - timestamp_, kMinTimeStep);
   if (odom_from_body && last_odom_from_body_)
@@ -97,9 +100,9 @@ MotionModel::State MotionModel::stateAt(
   return carriedByVelocity(step);
 }
 
-MotionModel::State MotionModel::carriedByOdometry(double step,
-                                                  const Eigen::Isometry3d& last_from_now) const {
-  State state;
+MotionState MotionModel::carriedByOdometry(double step,
+                                           const Eigen::Isometry3d& last_from_now) const {
+  MotionState state;
   state.map_from_body = normalized(last_.map_from_body * last_from_now);
   state.rate = difference(last_.map_from_body, state.map_from_body) / step;
   const Vector6d variance = odometryVariance(last_from_now);
@@ -110,11 +113,11 @@ MotionModel::State MotionModel::carriedByOdometry(double step,
   return state;
 }
 
-MotionModel::State MotionModel::carriedByVelocity(double step) const {
-  State state;
+MotionState MotionModel::carriedByVelocity(double step) const {
+  MotionState state;
   state.map_from_body = retract(last_.map_from_body, step * last_.rate);
   state.rate = last_.rate;
-  Matrix12d carry = Matrix12d::Identity();
+  MotionState::Covariance carry = MotionState::Covariance::Identity();
   carry.topRightCorner<6, 6>() = step * Matrix6d::Identity();
   state.covariance = carry * last_.covariance * carry.transpose();
   const Vector6d density = agility();

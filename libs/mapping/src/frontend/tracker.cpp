@@ -99,7 +99,9 @@ TrackResult Tracker::track(const ScanFeatures& scan,
   }
   lost_.clear();
   // Between keyframes, motion ties what neither planes nor points do.
-  result.match.point_information += motion_.informationSinceAnchor(scan.timestamp, odom_from_body);
+  result.predicted = motion_.predictState(scan.timestamp, odom_from_body);
+  result.motion_information = motion_.informationSinceAnchor(scan.timestamp, odom_from_body);
+  result.match.point_information += result.motion_information;
   motion_.update({scan.timestamp, result.match.map_from_body}, odom_from_body,
                  result.match.information);
   result.wants_keyframe = wantsKeyframe(result.match, newest);

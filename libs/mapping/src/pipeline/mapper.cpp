@@ -8,6 +8,7 @@
 #include "opp/mapping/frontend/merge_landmarks.h"
 #include "opp/mapping/loop/close_loose_ties.h"
 #include "opp/mapping/loop/join_parts.h"
+#include "opp/mapping/loop/level_ties.h"
 #include "opp/mapping/loop/match_place.h"
 #include "opp/mapping/loop/split_map.h"
 #include "opp/mapping/loop/tie_parts.h"
@@ -52,12 +53,14 @@ FrameResult Mapper::add(ScanFeatures scan, const std::optional<Eigen::Isometry3d
   }
   lost_in_a_row_ = 0;
   if (track.localized()) {
+    followPassage(scan.timestamp, track.match);
     if (!track.wants_keyframe) follow(scan, track.match.map_from_body);
   } else {
     // A body past a bare wall is followed until it sees again what it knows, or enough of what is
     // new to go on from there: the map knows how loosely the two are tied, see `finish`.
     result.localized = result.is_keyframe =
         track.wants_keyframe && canFoundMap(scan.cloud_in_body, params_.loop.min_normal_spread);
+    if (result.is_keyframe) openPassage(scan.timestamp, track);
   }
   if (result.is_keyframe) addKeyframe(std::move(scan), track.match);
   return result;
@@ -68,6 +71,7 @@ FrameResult Mapper::begin(ScanFeatures scan,
   // The very first scan of a session founds a map whatever it shows: there is nothing to wait for.
   if (scan.cloud_in_body.size() == 0) return {};
   if (continues_ && !canFoundMap(scan.cloud_in_body, params_.loop.min_normal_spread)) return {};
+  closePassage();
   MapPart part(next_part_++, params_.loop);
   if (continues_) {
     if (const auto beginning = expectedBeginning(scan, odom_from_body))
@@ -121,12 +125,39 @@ void Mapper::follow(const ScanFeatures& scan, const Eigen::Isometry3d& map_from_
                        keyframe_from_map * map_from_body});
 }
 
+void Mapper::openPassage(double timestamp, const TrackResult& track) {
+  closePassage();
+  const Eigen::Isometry3d first_from_map = active().keyframes.back().map_from_body.inverse();
+  const Matrix6d map_from_first = turned(first_from_map.linear().transpose());
+  passage_.emplace(static_cast<int>(active().keyframes.size()), timestamp,
+                   inFrame(first_from_map, track.predicted),
+                   map_from_first.transpose() * track.motion_information * map_from_first);
+}
+
+void Mapper::followPassage(double timestamp, const MatchResult& match) {
+  if (!passage_) return;
+  const Eigen::Isometry3d end_from_map =
+      active().keyframes[static_cast<std::size_t>(passage_->keyframe())].map_from_body.inverse();
+  const Matrix6d map_from_end = turned(end_from_map.linear().transpose());
+  passage_->follow({timestamp, end_from_map * match.map_from_body},
+                   map_from_end.transpose() * match.information * map_from_end);
+  if (passage_->isFollowed()) closePassage();
+}
+
+void Mapper::closePassage() {
+  if (passage_) passage_->tighten(params_.frontend, active());
+  passage_.reset();
+}
+
+double Mapper::maxOpenVariance() const {
+  return params_.frontend.max_drift_translation * params_.frontend.max_drift_translation;
+}
+
 void Mapper::splitParts() {
-  const double max_drift = params_.frontend.max_drift_translation;
   std::vector<MapPart> parts;
   for (MapPart& part : parts_) {
-    if (params_.loop.close_loops) closeLooseTies(max_drift * max_drift, params_, part.map);
-    const std::vector<int> sets = tiedSets(part.map, max_drift * max_drift);
+    if (params_.loop.close_loops) closeLooseTies(maxOpenVariance(), params_, part.map);
+    const std::vector<int> sets = tiedSets(part.map, maxOpenVariance());
     part.history.expectTied(part.map, sets);
     std::vector<MapState> maps = splitMap(std::move(part.map), sets);
     if (maps.size() == 1) {
@@ -146,6 +177,10 @@ void Mapper::splitParts() {
 }
 
 void Mapper::finish() {
+  closePassage();
+  for (MapPart& part : parts_) {
+    if (levelTies(maxOpenVariance(), params_, part.map)) settleMap(part.map, 1, params_);
+  }
   splitParts();
   joinParts(parts_, params_);
   if (tieParts(parts_)) splitParts();

@@ -17,6 +17,17 @@ Vector6d typicalMotion(double seconds, const FrontendParams& params);
 /// Whether a pose of this covariance of (ω, v) is certain within `max_drift_*` in every direction.
 bool isKnown(const Matrix6d& covariance, const FrontendParams& params);
 
+/// A pose and how it changes.
+struct MotionState {
+  using Covariance = Eigen::Matrix<double, 12, 12>;
+  Eigen::Isometry3d map_from_body = Eigen::Isometry3d::Identity();
+  Vector6d rate = Vector6d::Zero();            ///< of (ω, v), in the map's axes [rad/s, m/s]
+  Covariance covariance = Covariance::Zero();  ///< of (ω, v, rate)
+};
+
+/// The same state in another frame.
+MotionState inFrame(const Eigen::Isometry3d& frame_from_map, const MotionState& state);
+
 /// Predicts the next pose: by the rawlog's odometry where there is one, else by constant velocity.
 ///
 /// A Kalman filter of pose and velocity in (ω, v), see `retract`: a direction that scans do not fix
@@ -39,6 +50,13 @@ class MotionModel {
   /// Where the body should be at `timestamp`. Before the start: the identity, nothing known.
   PosePrior predict(double timestamp, const std::optional<Eigen::Isometry3d>& odom_from_body) const;
 
+  /// The same with the rate. Before the start: the identity, without uncertainty.
+  MotionState predictState(double timestamp,
+                           const std::optional<Eigen::Isometry3d>& odom_from_body) const;
+
+  /// What the scans up to the last one told.
+  const MotionState& state() const { return last_; }
+
   /// The last known pose, as uncertain as it was and as the typical speeds allow at `timestamp`:
   /// for a body that did something unexpected.
   PosePrior lastPose(double timestamp) const;
@@ -55,21 +73,14 @@ class MotionModel {
   void correct(const Eigen::Isometry3d& last_pose);
 
  private:
-  using Matrix12d = Eigen::Matrix<double, 12, 12>;
-  struct State {
-    Eigen::Isometry3d map_from_body = Eigen::Isometry3d::Identity();
-    Vector6d rate = Vector6d::Zero();          ///< [rad/s, m/s]
-    Matrix12d covariance = Matrix12d::Zero();  ///< of (ω, v, rate)
-  };
   struct Anchor {
     double timestamp = 0.0;
     std::optional<Eigen::Isometry3d> odom_from_body;
     Matrix6d rate_covariance = Matrix6d::Zero();
   };
 
-  State stateAt(double timestamp, const std::optional<Eigen::Isometry3d>& odom_from_body) const;
-  State carriedByOdometry(double step, const Eigen::Isometry3d& last_from_now) const;
-  State carriedByVelocity(double step) const;
+  MotionState carriedByOdometry(double step, const Eigen::Isometry3d& last_from_now) const;
+  MotionState carriedByVelocity(double step) const;
   Vector6d odometryVariance(const Eigen::Isometry3d& first_from_second) const;
   /// Spectral density of the accelerations [rad²/s³, m²/s³].
   Vector6d agility() const;
@@ -77,7 +88,7 @@ class MotionModel {
   FrontendParams params_;
   bool started_ = false;
   double timestamp_ = 0.0;
-  State last_;
+  MotionState last_;
   std::optional<Eigen::Isometry3d> last_odom_from_body_;
   Anchor anchor_;
 };

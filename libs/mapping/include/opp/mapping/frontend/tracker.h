@@ -38,6 +38,9 @@ struct TrackResult {
   TrackOutcome outcome = TrackOutcome::kNoMap;
   bool wants_keyframe = false;  ///< the map would gain by this scan; false if not followed
   MatchResult match;            ///< of the best attempt, also if it was not good enough
+  MotionState predicted;        ///< what motion said before
+  /// What motion since the newest keyframe added to `match.point_information`.
+  Matrix6d motion_information = Matrix6d::Zero();
 
   bool localized() const { return outcome == TrackOutcome::kLocalized; }
 };

@@ -19,6 +19,7 @@ struct LoopParams {
   double min_normal_spread = 0.01;
   double step_sigma = 0.003;
   double drift_ratio = 0.01;
+  double level_sigma = degToRad(1.0);
   double connected_ratio = 0.3;
   double search_distance = 2.0;
   double drift_gate = 4.0;
@@ -48,6 +49,9 @@ struct LoopParams {
     f(p.step_sigma, Field{"step_sigma", "m", 1e-6, 1.0,
                           "drift between keyframes that see each other's places, at least"});
     f(p.drift_ratio, Field{"drift_ratio", "", 0.0, 1.0, "and this share of their distance"});
+    f(p.level_sigma, Field{"level_sigma", "rad", 1e-4, 10.0,
+                           "floors, tables and ceilings are level this well (standard deviation): "
+                           "what ties maps on both sides of a bare wall"});
     f(p.connected_ratio,
       Field{"connected_ratio", "", 0.01, 10.0,
             "a keyframe is matched without further proof while its drift is below this share of "

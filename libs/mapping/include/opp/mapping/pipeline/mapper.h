@@ -5,6 +5,7 @@
 #include "opp/mapping/core/map_state.h"
 #include "opp/mapping/core/mapper_params.h"
 #include "opp/mapping/core/trajectory.h"
+#include "opp/mapping/frontend/open_passage.h"
 #include "opp/mapping/frontend/tracker.h"
 #include "opp/mapping/loop/close_loops.h"
 #include "opp/mapping/loop/map_part.h"
@@ -44,10 +45,10 @@ class Mapper {
   /// A scan without samples is not localized.
   FrameResult add(ScanFeatures scan, const std::optional<Eigen::Isometry3d>& odom_from_body);
 
-  /// Takes parts asunder where they are tied so loosely that poses would be invented, joins those
-  /// that are proven to belong together, looks whether what joined ties better what was taken
-  /// asunder, gives up parts that are too small, and optimizes each as a whole; to be called after
-  /// the last scan.
+  /// Lets floors be level beyond what ties maps loosely, takes parts asunder where they are tied so
+  /// loosely that poses would be invented, joins those that are proven to belong together, looks
+  /// whether what joined ties better what was taken asunder, gives up parts that are too small, and
+  /// optimizes each as a whole; to be called after the last scan.
   void finish();
 
   /// The parts that stayed apart, after `finish` those with most scans first; empty before the
@@ -62,6 +63,12 @@ class Mapper {
   std::optional<ExpectedBeginning> expectedBeginning(
       const ScanFeatures& scan, const std::optional<Eigen::Isometry3d>& odom_from_body) const;
   void addKeyframe(ScanFeatures scan, const MatchResult& match);
+  /// The scan that is about to become a keyframe left its pose open.
+  void openPassage(double timestamp, const TrackResult& track);
+  void followPassage(double timestamp, const MatchResult& match);
+  void closePassage();
+  /// Keyframes that a map ties no worse than this stay in it, see `tiedSets` [m²].
+  double maxOpenVariance() const;
   void splitParts();
   void follow(const ScanFeatures& scan, const Eigen::Isometry3d& map_from_body);
 
@@ -69,8 +76,9 @@ class Mapper {
   Eigen::Isometry3d initial_pose_ = Eigen::Isometry3d::Identity();
   Tracker tracker_;
   LoopCloser loop_closer_;
-  std::vector<MapPart> parts_;  ///< the last one is being built
-  std::vector<int> local_;      ///< keyframes that scans are registered against
+  std::vector<MapPart> parts_;          ///< the last one is being built
+  std::vector<int> local_;              ///< keyframes that scans are registered against
+  std::optional<OpenPassage> passage_;  ///< the last one, until enough scans followed
   MapState empty_;
   bool continues_ = false;
   int lost_in_a_row_ = 0;
