@@ -100,6 +100,17 @@ TEST(Mapper, WhatHoldsNothingIsNotLocalized) {
   EXPECT_EQ(posesOf(mapper.map(), 0).count(0), 1U);
 }
 
+TEST(Mapper, BeginsAnewAtOnceWhereItCannotKnowThePlaceAnyMore) {
+  Mapper mapper{MapperParams()};
+  for (int step = 0; step < 12; ++step) mapper.add(scanAt(step, 1, 0.003), std::nullopt);
+  ScanFeatures later = scanAt(12, 1, 0.003);
+  later.timestamp += 60.0;
+  EXPECT_TRUE(mapper.add(std::move(later), std::nullopt).is_keyframe);
+  ASSERT_EQ(mapper.parts().size(), 2U);
+  EXPECT_EQ(mapper.parts()[0].map.scans.size(), 12U);
+  EXPECT_EQ(mapper.parts()[1].map.scans.size(), 1U);
+}
+
 TEST(PlanarMapOf, DescribesTheRoom) {
   const Mapper mapper = mapRoom(2, 20, 0.001);
   const PlanarMap map = planarMapOf(mapper.map(), SensorModel(), PlanarParams());

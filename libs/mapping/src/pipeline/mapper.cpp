@@ -48,7 +48,9 @@ FrameResult Mapper::add(ScanFeatures scan, const std::optional<Eigen::Isometry3d
   TrackResult track = tracker_.track(scan, odom_from_body, active());
   FrameResult result{track.localized(), track.wants_keyframe, track.match.overlap, track.match.rms};
   if (!track.localized() && track.outcome != TrackOutcome::kUnobserved) {
-    if (++lost_in_a_row_ < params_.loop.lost_scans) return result;
+    // Once its place is forgotten a body is not looked for any more: nothing is worth waiting for.
+    const bool forgotten = track.outcome == TrackOutcome::kForgotten;
+    if (++lost_in_a_row_ < params_.loop.lost_scans && !forgotten) return result;
     return begin(std::move(scan), odom_from_body);
   }
   lost_in_a_row_ = 0;

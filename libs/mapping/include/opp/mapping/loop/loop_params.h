@@ -39,8 +39,9 @@ struct LoopParams {
   static void visit(Self&& p, F&& f) {
     f(p.close_loops, Field{"close_loops", "", 0, 1, "recognize places of the same map"});
     f(p.join_maps, Field{"join_maps", "", 0, 1, "recognize places of maps that were built apart"});
-    f(p.lost_scans,
-      Field{"lost_scans", "", 1, 1e6, "after so many lost scans in a row a new map is begun"});
+    f(p.lost_scans, Field{"lost_scans", "", 1, 1e6,
+                          "after so many lost scans in a row a new map is begun, at once if motion "
+                          "can no longer tell where the body is"});
     f(p.min_scans,
       Field{"min_scans", "", 1, 1e6, "maps of fewer scans that join no other are given up"});
     f(p.min_normal_spread, Field{"min_normal_spread", "", 0.0, 0.33,
