@@ -6,6 +6,7 @@
 #include "opp/mapping/loop/map_conflict.h"
 #include "opp/mapping/loop/tied_sets.h"
 
+#include "loop/choose_keyframes.h"
 #include "loop/loop_claims.h"
 
 #include <algorithm>
@@ -17,9 +18,6 @@ namespace opp::mapping {
 namespace {
 
 using Index = std::size_t;
-
-/// Keyframes of a set that look for their places, about.
-constexpr int kClaimants = 40;
 
 using Sets = std::vector<int>;  ///< number of each keyframe's set
 
@@ -42,7 +40,7 @@ std::map<std::pair<int, int>, ClaimPool> claimsBetween(const MapState& map, cons
   std::vector<int> seen(Index(countOf(sets)), 0);
   for (Index k = 0; k < sets.size(); ++k) {
     const auto size = static_cast<int>(std::count(sets.begin(), sets.end(), sets[k]));
-    if (seen[Index(sets[k])]++ % (1 + size / kClaimants) != 0) continue;
+    if (seen[Index(sets[k])]++ % claimantStep(size) != 0) continue;
     // A place of one scan proves no more than that scan: it may fit at a wrong place, whoever
     // looks.
     const auto elsewhere = [&](int other) {

@@ -11,6 +11,8 @@
 #include "opp/mapping/loop/motion_between.h"
 #include "opp/mapping/loop/place.h"
 
+#include "loop/choose_keyframes.h"
+
 #include <algorithm>
 #include <map>
 #include <optional>
@@ -20,9 +22,6 @@ namespace opp::mapping {
 namespace {
 
 using Index = std::size_t;
-
-/// Keyframes of a part that look for their places, about.
-constexpr int kClaimants = 40;
 
 /// A claim about two parts, by their indices; `a` comes before `b`.
 struct PartClaim {
@@ -49,8 +48,7 @@ class Joiner {
   void run() {
     for (Index p = 0; p < parts_.size(); ++p) {
       const int keyframes = static_cast<int>(parts_[p].map.keyframes.size());
-      const int step = 1 + keyframes / kClaimants;
-      for (int k = 0; k < keyframes; k += step) look(p, k);
+      for (int k = 0; k < keyframes; k += claimantStep(keyframes)) look(p, k);
     }
     while (joinBest()) {
     }
@@ -76,17 +74,11 @@ class Joiner {
     std::stable_sort(ranked.begin(), ranked.end(), [](const Candidate& x, const Candidate& y) {
       return x.likeness > y.likeness;
     });
-    std::vector<Candidate> chosen;
-    for (const Candidate& c : ranked) {
-      if (chosen.size() == Index(params_.loop.max_candidates)) break;
-      const bool new_place =
-          std::none_of(chosen.begin(), chosen.end(), [&](const Candidate& other) {
-            return other.part == c.part &&
-                   (viewOf(c) - viewOf(other)).norm() <= 0.5 * params_.loop.search_distance;
-          });
-      if (new_place) chosen.push_back(c);
-    }
-    return chosen;
+    return distinctPlaces(
+        ranked, Index(params_.loop.max_candidates), [&](const Candidate& x, const Candidate& y) {
+          return x.part != y.part ||
+                 (viewOf(x) - viewOf(y)).norm() > 0.5 * params_.loop.search_distance;
+        });
   }
 
   Eigen::Vector3d viewOf(const Candidate& c) const {

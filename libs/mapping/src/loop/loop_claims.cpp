@@ -5,6 +5,8 @@
 #include "opp/mapping/loop/keyframe_graph.h"
 #include "opp/mapping/loop/match_place.h"
 
+#include "loop/choose_keyframes.h"
+
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -21,7 +23,8 @@ std::vector<int> candidates(const MapState& map, int keyframe, const std::vector
   const LoopParams& loop = params.loop;
   const double connected = connectedVariance(map, keyframe, params);
   const Eigen::Vector3d here = map.keyframes[Index(keyframe)].viewCentre();
-  std::vector<std::pair<double, int>> near;
+  using Near = std::pair<double, int>;  // distance of the views, keyframe
+  std::vector<Near> near;
   for (int k = 0; k < static_cast<int>(map.keyframes.size()); ++k) {
     if (variances[Index(k)] <= connected || !eligible(k)) continue;
     const double distance = (map.keyframes[Index(k)].viewCentre() - here).norm();
@@ -29,16 +32,14 @@ std::vector<int> candidates(const MapState& map, int keyframe, const std::vector
     if (distance <= reach) near.emplace_back(distance, k);
   }
   std::sort(near.begin(), near.end());
-  std::vector<int> chosen;
-  for (const auto& [distance, k] : near) {
-    if (chosen.size() == Index(loop.max_candidates)) break;
-    const Eigen::Vector3d view = map.keyframes[Index(k)].viewCentre();
-    const bool new_place = std::all_of(chosen.begin(), chosen.end(), [&](int other) {
-      return (map.keyframes[Index(other)].viewCentre() - view).norm() > 0.5 * loop.search_distance;
-    });
-    if (new_place) chosen.push_back(k);
-  }
-  return chosen;
+  near = distinctPlaces(near, Index(loop.max_candidates), [&](const Near& a, const Near& b) {
+    return (map.keyframes[Index(a.second)].viewCentre() -
+            map.keyframes[Index(b.second)].viewCentre())
+               .norm() > 0.5 * loop.search_distance;
+  });
+  std::vector<int> keyframes;
+  for (const Near& candidate : near) keyframes.push_back(candidate.second);
+  return keyframes;
 }
 
 /// The keyframe's present pose, as uncertain as drift makes it relative to the candidate.
