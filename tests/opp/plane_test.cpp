@@ -28,6 +28,19 @@ TEST(Plane, RejectsWhatIsNoPlane) {
   EXPECT_THROW(Plane::fromCoefficients({1.0, 0.0, 0.0}, nan), std::invalid_argument);
 }
 
+TEST(Plane, OfAUnitNormalKeepsEveryBit) {
+  test::Random random(7);
+  for (int trial = 0; trial < 200; ++trial) {
+    const Plane plane = Plane::fromPointNormal(random.vector(9.0), random.vector(2.0));
+    const Plane again = Plane::fromUnitNormal(plane.normal(), plane.d());
+    EXPECT_EQ(again.normal(), plane.normal());
+    EXPECT_EQ(again.d(), plane.d());
+  }
+  EXPECT_THROW(Plane::fromUnitNormal({0.0, 0.0, 1.001}, 0.0), std::invalid_argument);
+  EXPECT_THROW(Plane::fromUnitNormal({0.0, 0.0, std::nan("")}, 0.0), std::invalid_argument);
+  EXPECT_THROW(Plane::fromUnitNormal({0.0, 0.0, 1.0}, std::nan("")), std::invalid_argument);
+}
+
 TEST(Plane, TransformKeepsSignedDistances) {
   test::Random random(1);
   for (int k = 0; k < 100; ++k) {

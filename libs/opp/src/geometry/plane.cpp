@@ -21,6 +21,13 @@ Plane Plane::fromPointNormal(const Eigen::Vector3d& point, const Eigen::Vector3d
   return fromCoefficients(normal, -normal.dot(point));
 }
 
+Plane Plane::fromUnitNormal(const Eigen::Vector3d& unit_normal, double d) {
+  constexpr double kRounding = 1e-12;
+  if (!(std::abs(unit_normal.squaredNorm() - 1.0) <= kRounding) || !std::isfinite(d))
+    throw std::invalid_argument("a plane needs a normal of length 1 and a finite offset");
+  return Plane(unit_normal, d);
+}
+
 Plane Plane::flipped() const { return Plane(-normal_, -d_); }
 
 Plane transformed(const Eigen::Isometry3d& b_from_a, const Plane& plane_in_a) {

@@ -23,6 +23,11 @@ class Plane {
   /// \throws std::invalid_argument if the normal is zero or not finite.
   static Plane fromCoefficients(const Eigen::Vector3d& normal, double d);
 
+  /// Plane of exactly these numbers: one that was stored comes back to the bit, which scaling to
+  /// |normal| = 1 once more would not do.
+  /// \throws std::invalid_argument if |normal| is not 1 but for rounding, or d is not finite.
+  static Plane fromUnitNormal(const Eigen::Vector3d& unit_normal, double d);
+
   const Eigen::Vector3d& normal() const { return normal_; }
   double d() const { return d_; }
   /// (n, d) as a homogeneous 4-vector π, so that π·(x,1) is the signed distance.
