@@ -11,7 +11,7 @@
 #include "opp/mapping/io/tum_trajectory.h"
 #include "opp/mapping/pipeline/build_occupancy_map.h"
 #include "opp/mapping/pipeline/map_rawlog.h"
-#include "opp/mapping/pipeline/mapper.h"
+#include "opp/mapping/pipeline/mapping_run.h"
 #include "opp/mapping/pipeline/report_figures.h"
 #include "opp/mapping/planar/planar_map_of_landmarks.h"
 #include "opp/mapping/report/html_report.h"
@@ -33,27 +33,25 @@ double secondsSince(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
+using opp::mapping::MappingRun;
 using opp::mapping::MapState;
 using opp::mapping::RunReport;
 
-opp::mapping::Mapper buildMap(const MapOptions& options, RunReport& report) {
+void buildMap(const MapOptions& options, MappingRun& run) {
   opp::mapping::MapRawlogOptions input;
   input.selection = options.selection;
   input.threads = options.threads;
   if (options.initial_poses)
     input.initial_poses = opp::mapping::readTumTrajectory(*options.initial_poses);
-  opp::mapping::Mapper mapper(options.params);
   opp::apps::Progress progress("mapping", "frames", opp::apps::Progress::modeFor(options.quiet));
   for (const std::filesystem::path& rawlog : options.rawlogs) {
     opp::mapping::mapRawlog(
         rawlog, input, options.params.primitives,
-        [&](double fraction, std::size_t frames) { progress.update(fraction, frames); }, mapper,
-        report);
+        [&](double fraction, std::size_t frames) { progress.update(fraction, frames); }, run);
   }
-  opp::mapping::finishMapping(mapper, report);
+  opp::mapping::finishMapping(run);
   progress.finish();
-  for (const std::string& warning : report.warnings) progress.log("warning: " + warning);
-  return mapper;
+  for (const std::string& warning : run.report.warnings) progress.log("warning: " + warning);
 }
 
 void writeOccupancyMap(const MapOptions& options, const MapState& map, RunReport& report,
@@ -86,11 +84,11 @@ opp::mapping::PlanarMap writeMap(const MapOptions& options, const MapState& map,
 }
 
 /// The planar maps of the parts, the main map first.
-std::vector<opp::mapping::PlanarMap> writeMaps(const MapOptions& options,
-                                               const opp::mapping::Mapper& mapper,
-                                               RunReport& report,
+std::vector<opp::mapping::PlanarMap> writeMaps(const MapOptions& options, MappingRun& run,
                                                const std::filesystem::path& folder) {
   const auto start = std::chrono::steady_clock::now();
+  const opp::mapping::Mapper& mapper = run.mapper;
+  RunReport& report = run.report;
   std::vector<opp::mapping::PlanarMap> maps = {writeMap(options, mapper.map(), folder)};
   const opp::mapping::PlanarMap& map = maps.front();
   report.counts["planes"] = map.planes.size();
@@ -132,14 +130,16 @@ void writeRun(const MapOptions& options, const RunReport& report,
 void run(opp::apps::CommandLine& line) {
   const MapOptions options = opp::apps::parseOptions(line);
   opp::mapping::OutputFolder output(options.output, options.force);
-  RunReport report;
-  const opp::mapping::Mapper mapper = buildMap(options, report);
-  const auto maps = writeMaps(options, mapper, report, output.path());
-  writeKeyframes(options, mapper.map(), report, output.path());
-  if (options.octomap) writeOccupancyMap(options, mapper.map(), report, output.path());
-  writeRun(options, report, output.path());
+  MappingRun mapped(options.params);
+  buildMap(options, mapped);
+  const auto maps = writeMaps(options, mapped, output.path());
+  writeKeyframes(options, mapped.mapper.map(), mapped.report, output.path());
+  if (options.octomap)
+    writeOccupancyMap(options, mapped.mapper.map(), mapped.report, output.path());
+  writeRun(options, mapped.report, output.path());
   opp::mapping::writeHtmlReport(
-      output.path(), opp::mapping::reportFigures(mapper, report, maps, options.params.planar));
+      output.path(),
+      opp::mapping::reportFigures(mapped.mapper, mapped.report, maps, options.params.planar));
   output.commit();
 }
 

@@ -28,23 +28,31 @@ FeatureStream::FeatureStream(RawlogReader& reader, const PrimitiveParams& params
       params_(params),
       scans_ahead_(static_cast<std::size_t>(resolveThreads(threads))) {}
 
+void FeatureStream::skip(std::size_t scans) {
+  while (scans > 0 && readScan()) --scans;
+}
+
+std::optional<Scan> FeatureStream::readScan() {
+  while (std::optional<RawlogEntry> entry = reader_.next()) {
+    if (auto* scan = std::get_if<Scan>(&*entry)) return std::move(*scan);
+    const auto& reading = std::get<OdometryReading>(*entry);
+    odometry_.add(reading.timestamp, reading.odom_from_body);
+  }
+  at_end_ = true;
+  return std::nullopt;
+}
+
 void FeatureStream::readAhead() {
   while (!at_end_ && pending_.size() < scans_ahead_) {
-    std::optional<RawlogEntry> entry = reader_.next();
-    if (!entry) {
-      at_end_ = true;
-    } else if (const auto* reading = std::get_if<OdometryReading>(&*entry)) {
-      odometry_.add(reading->timestamp, reading->odom_from_body);
-    } else {
-      Scan& scan = std::get<Scan>(*entry);
-      const auto odom_from_body = odometry_.at(scan.timestamp);
-      // With one thread in all, the work is done when its result is asked for, on the caller's
-      // thread.
-      const auto policy = scans_ahead_ > 1 ? std::launch::async : std::launch::deferred;
-      pending_.push_back(std::async(policy, [scan = std::move(scan), odom_from_body, this] {
-        return computeFeatures(scan, odom_from_body, params_);
-      }));
-    }
+    std::optional<Scan> scan = readScan();
+    if (!scan) return;
+    const auto odom_from_body = odometry_.at(scan->timestamp);
+    // With one thread in all, the work is done when its result is asked for, on the caller's
+    // thread.
+    const auto policy = scans_ahead_ > 1 ? std::launch::async : std::launch::deferred;
+    pending_.push_back(std::async(policy, [scan = std::move(*scan), odom_from_body, this] {
+      return computeFeatures(scan, odom_from_body, params_);
+    }));
   }
 }
 

@@ -19,6 +19,19 @@ double secondsSince(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
+/// The session that is read next, or the rest of it.
+SessionReport& openSession(const std::filesystem::path& rawlog, FeatureStream& stream,
+                           MappingRun& run) {
+  std::vector<SessionReport>& sessions = run.report.sessions;
+  if (sessions.size() > run.sessions_read) {
+    stream.skip(sessions.back().frames_read);
+  } else {
+    sessions.emplace_back().path = rawlog.string();
+    run.mapper.startSession();
+  }
+  return sessions.back();
+}
+
 /// Predictions are for a scan if their stamps agree this well [s]: text files round stamps.
 constexpr double kSameTime = 1e-3;
 
@@ -91,47 +104,44 @@ void warn(const SessionReport& session, std::vector<std::string>& warnings) {
 }  // namespace
 
 void mapRawlog(const std::filesystem::path& rawlog, const MapRawlogOptions& options,
-               const PrimitiveParams& params, const ProgressCallback& progress, Mapper& mapper,
-               RunReport& report) {
+               const PrimitiveParams& params, const ProgressCallback& progress, MappingRun& run) {
   RawlogReader reader(rawlog, options.selection);
   FeatureStream stream(reader, params, options.threads);
-  const int id = static_cast<int>(report.sessions.size());
-  SessionReport session;
-  session.path = rawlog.string();
-  const Clock::time_point start = Clock::now();
-  double seconds_tracking = 0.0;
-  mapper.startSession();
+  Clock::time_point start = Clock::now();
+  const int id = static_cast<int>(run.sessions_read);
+  SessionReport& session = openSession(rawlog, stream, run);
   while (std::optional<FeatureFrame> frame = stream.next()) {
     const Clock::time_point start_tracking = Clock::now();
     frame->features.session = id;
     session.scans.push_back({frame->features.scan_index, frame->features.timestamp});
     const auto given = poseNear(options.initial_poses, frame->features.timestamp);
-    if (given && id == 0 && session.frames_read == 0) mapper.setInitialPose(*given);
-    mapper.add(std::move(frame->features), given ? given : frame->odom_from_body);
-    seconds_tracking += secondsSince(start_tracking);
+    if (given && id == 0 && session.frames_read == 0) run.mapper.setInitialPose(*given);
+    run.mapper.add(std::move(frame->features), given ? given : frame->odom_from_body);
+    run.report.seconds["registration"] += secondsSince(start_tracking);
+    run.report.seconds["frames"] += secondsSince(start);
     ++session.frames_read;
     if (progress) progress(reader.progress(), session.frames_read);
+    start = Clock::now();
   }
-  report.seconds["registration"] += seconds_tracking;
-  report.seconds["frames"] += secondsSince(start);
   session.bytes = std::filesystem::file_size(rawlog);
   session.sha256 = sha256OfFile(rawlog);
-  addWarnings(reader, session.path, report);
-  report.sessions.push_back(std::move(session));
+  addWarnings(reader, session.path, run.report);
+  ++run.sessions_read;
 }
 
-void finishMapping(Mapper& mapper, RunReport& report) {
+void finishMapping(MappingRun& run) {
   const Clock::time_point start = Clock::now();
-  mapper.finish();
-  report.seconds["optimization"] += secondsSince(start);
+  run.mapper.finish();
+  run.report.seconds["optimization"] += secondsSince(start);
   int id = 0;
-  for (SessionReport& session : report.sessions) {
-    describe(mapper, id++, session);
-    warn(session, report.warnings);
+  for (SessionReport& session : run.report.sessions) {
+    describe(run.mapper, id++, session);
+    warn(session, run.report.warnings);
   }
-  report.counts["maps"] = mapper.parts().size();
-  report.counts["keyframes"] = mapper.map().keyframes.size();
-  report.counts["loop_closures"] = mapper.map().loop_closures;
+  run.report.counts["maps"] = run.mapper.parts().size();
+  run.report.counts["keyframes"] = run.mapper.map().keyframes.size();
+  run.report.counts["loop_closures"] = run.mapper.map().loop_closures;
+  run.finished = true;
 }
 
 }  // namespace opp::mapping

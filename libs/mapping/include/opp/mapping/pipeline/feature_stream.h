@@ -27,10 +27,15 @@ class FeatureStream {
   /// `threads` ≤ 0: all cores. The reader must outlive the stream.
   FeatureStream(RawlogReader& reader, const PrimitiveParams& params, int threads);
 
+  /// Passes over scans without a look at them, so many or all that are left; odometry on the way
+  /// is taken in. To be called before the first `next`.
+  void skip(std::size_t scans);
+
   /// The next scan's features; nothing at the end of the rawlog. Errors of the reader pass through.
   std::optional<FeatureFrame> next();
 
  private:
+  std::optional<Scan> readScan();
   void readAhead();
 
   RawlogReader& reader_;

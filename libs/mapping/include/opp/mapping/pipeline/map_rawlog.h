@@ -2,9 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "opp/mapping/core/run_report.h"
 #include "opp/mapping/io/rawlog_reader.h"
-#include "opp/mapping/pipeline/mapper.h"
+#include "opp/mapping/pipeline/mapping_run.h"
 
 #include <filesystem>
 #include <functional>
@@ -23,15 +22,17 @@ struct MapRawlogOptions {
   int threads = 0;           ///< <= 0: all cores
 };
 
-/// Feeds all wanted scans of a rawlog to a mapper as its next session. Damage of the file becomes a
-/// warning of the report; what was read before is kept. \throws std::runtime_error if the rawlog
-/// cannot be read or holds no 3D observation that is wanted.
+/// Feeds all wanted scans of a rawlog to the mapper as the next session of the run; of a session
+/// that was read in part, those that are left: the result is the same as without the break. Damage
+/// of the file becomes a warning of the report; what was read before is kept. If `progress` throws,
+/// the run has all scans so far, and may go on.
+/// \throws std::runtime_error if the rawlog cannot be read or holds no 3D observation that is
+/// wanted.
 void mapRawlog(const std::filesystem::path& rawlog, const MapRawlogOptions& options,
-               const PrimitiveParams& params, const ProgressCallback& progress, Mapper& mapper,
-               RunReport& report);
+               const PrimitiveParams& params, const ProgressCallback& progress, MappingRun& run);
 
 /// Finishes the mapper and completes the report: what became of each session's scans, and a warning
-/// for each that is not wholly in the map.
-void finishMapping(Mapper& mapper, RunReport& report);
+/// for each that is not wholly in the map. To be called once, after the last session.
+void finishMapping(MappingRun& run);
 
 }  // namespace opp::mapping
