@@ -183,6 +183,7 @@ void Mapper::finish() {
   for (MapPart& part : parts_) {
     if (levelTies(maxOpenVariance(), params_, part.map)) settleMap(part.map, 1, params_);
   }
+  local_.clear();  // of keyframes that others join now
   splitParts();
   joinParts(parts_, params_);
   if (tieParts(parts_)) splitParts();

@@ -73,6 +73,7 @@ class MotionModel {
   void correct(const Eigen::Isometry3d& last_pose);
 
  private:
+  friend struct StateAccess;  // checkpoints
   struct Anchor {
     double timestamp = 0.0;
     std::optional<Eigen::Isometry3d> odom_from_body;

@@ -39,6 +39,7 @@ class OpenPassage {
   void tighten(const FrontendParams& params, MapState& map) const;
 
  private:
+  friend struct StateAccess;  // checkpoints
   struct LaterPose {
     StampedPose pose;
     Matrix6d information;

@@ -80,6 +80,7 @@ class Tracker {
   }
 
  private:
+  friend struct StateAccess;  // checkpoints
   /// \param moved the most that is known of the motion since the last localized scan
   TrackResult localize(const ScanFeatures& scan, const PosePrior& predicted, const PosePrior& moved,
                        const Keyframe& newest) const;

@@ -59,6 +59,7 @@ class ClaimPool {
   std::vector<PlaceClaim> agreed() const;
 
  private:
+  friend struct StateAccess;  // checkpoints
   bool agree(const PlaceClaim& x, const PlaceClaim& y) const;
   std::vector<PlaceClaim> largestGroup(const std::vector<PlaceClaim>& claims) const;
   LoopParams params_;

@@ -36,6 +36,7 @@ class LoopCloser {
   void reset() { claims_.clear(); }
 
  private:
+  friend struct StateAccess;  // checkpoints
   MapperParams params_;
   ClaimPool claims_;
 };

@@ -58,6 +58,7 @@ class Mapper {
   const MapState& map() const;
 
  private:
+  friend struct StateAccess;  // checkpoints
   MapState& active() { return parts_.back().map; }
   FrameResult begin(ScanFeatures scan, const std::optional<Eigen::Isometry3d>& odom_from_body);
   std::optional<ExpectedBeginning> expectedBeginning(
