@@ -3,6 +3,7 @@
 #pragma once
 
 #include "opp/mapping/backend/backend_params.h"
+#include "opp/mapping/checkpoint/checkpoint_params.h"
 #include "opp/mapping/dense/occupancy_params.h"
 #include "opp/mapping/frontend/frontend_params.h"
 #include "opp/mapping/loop/loop_params.h"
@@ -27,6 +28,7 @@ struct MapperParams {
   LoopParams loop;
   OccupancyParams occupancy;
   PlanarParams planar;
+  CheckpointParams checkpoint;
 
   /// Calls f(section) for each stage, in the order of the stages.
   template <typename Self, typename F>
@@ -40,6 +42,7 @@ struct MapperParams {
     f(p.loop);
     f(p.occupancy);
     f(p.planar);
+    f(p.checkpoint);
   }
 };
 
