@@ -86,6 +86,48 @@ TEST(OutputFolder, ClearsWhatAKilledRunLeft) {
   EXPECT_EQ(temp.contents(), (Names{"out", "out/run.json"}));
 }
 
+TEST(OutputFolder, KeepsACheckpointOnly) {
+  const test::TempFolder temp;
+  {
+    const OutputFolder output(temp / "out", false);
+    test::writeFile(output.checkpoint(), "half-way");
+    test::writeFile(output.path() / "trajectory.tum", "half");
+  }
+  const Names kept = {"out", "out/.unfinished", "out/.unfinished/checkpoint"};
+  EXPECT_EQ(temp.contents(), kept);
+  test::writeFile(temp / "out/.unfinished/map.bt", "half");
+  {
+    const OutputFolder output(temp / "out", false, true);
+    EXPECT_EQ(test::readFile(output.checkpoint()), "half-way");
+    EXPECT_FALSE(std::filesystem::exists(output.path() / "map.bt"));
+  }
+  EXPECT_EQ(temp.contents(), kept) << "nothing was done with it";
+  { const OutputFolder output(temp / "out", false); }
+  EXPECT_EQ(temp.contents(), Names{"out"}) << "a run that does not resume clears it";
+}
+
+TEST(OutputFolder, FinishedRunHasNoCheckpoint) {
+  const test::TempFolder temp;
+  {
+    OutputFolder output(temp / "out", false, true);
+    test::writeFile(output.checkpoint(), "all");
+    test::writeFile(output.path() / "run.json", "all");
+    output.commit();
+  }
+  EXPECT_EQ(temp.contents(), (Names{"out", "out/run.json"}));
+}
+
+TEST(OutputFolder, RunThatWasKilledAsItsFilesMovedIsResumed) {
+  const test::TempFolder temp;
+  std::filesystem::create_directories(temp / "out/.unfinished");
+  test::writeFile(temp / "out/.unfinished/checkpoint", "all");
+  test::writeFile(temp / "out/map.bt", "moved");
+  { const OutputFolder output(temp / "out", false, true); }
+  EXPECT_THAT(messageOf(temp / "out", false), testing::HasSubstr("map.bt"));
+  test::writeFile(temp / "out/run.json", "a run");
+  EXPECT_THROW(OutputFolder(temp / "out", false, true), std::runtime_error) << "it is finished";
+}
+
 TEST(OutputFolder, TwoRunsCannotWriteAtOnce) {
   const test::TempFolder temp;
   OutputFolder first(temp / "out", false);

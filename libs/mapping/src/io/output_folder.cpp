@@ -21,6 +21,7 @@ namespace fs = std::filesystem;
 
 constexpr std::string_view kFinishedMark = "run.json";
 constexpr std::string_view kLockFile = ".lock";
+constexpr std::string_view kCheckpoint = "checkpoint";
 
 /// Every file that a run may leave in its folder (the contract's table for opp-map).
 constexpr std::array<std::string_view, 14> kRunFiles = {
@@ -40,15 +41,9 @@ void refuseResults(const fs::path& folder) {
   }
 }
 
-void clear(const fs::path& folder) {
-  for (const auto& entry : fs::directory_iterator(folder)) {
-    if (entry.path().filename() != kLockFile) fs::remove_all(entry.path());
-  }
-}
-
 }  // namespace
 
-OutputFolder::OutputFolder(const fs::path& folder, bool force)
+OutputFolder::OutputFolder(const fs::path& folder, bool force, bool resume)
     : folder_(fs::absolute(folder).lexically_normal()) {
   if (folder_.filename().empty()) folder_ = folder_.parent_path();  // "out/" is "out"
   existing_ancestor_ = folder_;
@@ -56,10 +51,14 @@ OutputFolder::OutputFolder(const fs::path& folder, bool force)
   if (!fs::is_directory(existing_ancestor_)) {
     fail(folder_, existing_ancestor_.string() + " is not a folder");
   }
-  if (!force) refuseResults(folder_);
   unfinished_ = folder_ / ".unfinished";
+  const bool goes_on = resume && fs::exists(checkpoint()) && !fs::exists(folder_ / kFinishedMark);
+  if (!force && !goes_on) refuseResults(folder_);
   claim();
+  clear(resume);
 }
+
+fs::path OutputFolder::checkpoint() const { return unfinished_ / kCheckpoint; }
 
 void OutputFolder::claim() {
   std::error_code error;
@@ -72,7 +71,14 @@ void OutputFolder::claim() {
     close(std::exchange(lock_, -1));
     fail(folder_, "another run is writing into it");
   }
-  clear(unfinished_);
+}
+
+void OutputFolder::clear(bool keep_checkpoint) {
+  for (const auto& entry : fs::directory_iterator(unfinished_)) {
+    const fs::path name = entry.path().filename();
+    if (name == kLockFile || (keep_checkpoint && name == kCheckpoint)) continue;
+    fs::remove_all(entry.path());
+  }
 }
 
 void OutputFolder::commit() {
@@ -82,7 +88,7 @@ void OutputFolder::commit() {
   std::vector<fs::path> names;
   for (const auto& entry : fs::directory_iterator(unfinished_)) {
     const fs::path name = entry.path().filename();
-    if (name != kLockFile && name != kFinishedMark) names.push_back(name);
+    if (name != kLockFile && name != kCheckpoint && name != kFinishedMark) names.push_back(name);
   }
   names.emplace_back(kFinishedMark);
   // The mark goes first and comes last: a folder with it never holds a mixture of two runs.
@@ -91,11 +97,17 @@ void OutputFolder::commit() {
     if (fs::is_directory(folder_ / name)) fs::remove_all(folder_ / name);
     fs::rename(unfinished_ / name, folder_ / name);
   }
+  fs::remove(checkpoint());
 }
 
 OutputFolder::~OutputFolder() {
   std::error_code ignored;  // no worse than a leftover folder, which the next run clears
-  fs::remove_all(unfinished_, ignored);
+  try {
+    clear(true);
+  } catch (const fs::filesystem_error&) {
+  }
+  fs::remove(unfinished_ / kLockFile, ignored);
+  fs::remove(unfinished_, ignored);  // unless there is a checkpoint
   if (lock_ >= 0) close(lock_);
   // Undo what the constructor made; a folder that holds something is not removed.
   for (fs::path made = folder_; made != existing_ancestor_; made = made.parent_path()) {
