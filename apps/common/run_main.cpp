@@ -7,7 +7,6 @@
 
 #include <malloc.h>
 
-#include <exception>
 #include <iostream>
 #include <new>
 #include <stdexcept>
@@ -53,6 +52,11 @@ std::string userMessage(std::string_view what) {
   return std::string(mapping::trimmed(what.substr(0, what.find('\n'))));
 }
 
+std::string userMessage(const std::exception& error) {
+  if (dynamic_cast<const std::bad_alloc*>(&error) != nullptr) return "out of memory";
+  return userMessage(error.what());
+}
+
 int runMain(int argc, const char* const* argv, const std::string& name, const std::string& purpose,
             const std::function<void(CommandLine&)>& run) {
   keepFreedMemory();
@@ -71,10 +75,8 @@ int runMain(int argc, const char* const* argv, const std::string& name, const st
     return report(name, error.error() + " (" + error.argId() + ")", kWrongUsage);
   } catch (const UsageError& error) {
     return report(name, error.what(), kWrongUsage);
-  } catch (const std::bad_alloc&) {
-    return report(name, "out of memory", kFailed);
   } catch (const std::exception& error) {
-    return report(name, userMessage(error.what()), kFailed);
+    return report(name, userMessage(error), kFailed);
   }
 }
 

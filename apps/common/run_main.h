@@ -4,6 +4,7 @@
 
 #include "common/command_line.h"
 
+#include <exception>
 #include <functional>
 #include <string>
 #include <string_view>
@@ -21,5 +22,7 @@ int runMain(int argc, const char* const* argv, const std::string& name, const st
 /// The part of an exception's text that a user wants: MRPT's exceptions carry a backtrace, of which
 /// only the text behind "Message:" is kept; other texts stay as they are.
 std::string userMessage(std::string_view what);
+/// The same for the exception itself; also tells of lack of memory.
+std::string userMessage(const std::exception& error);
 
 }  // namespace opp::apps

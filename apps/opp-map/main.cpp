@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The opp-mapping authors
 // SPDX-License-Identifier: BSD-3-Clause
 // opp-map: rawlog in, map out.
+#include "opp/mapping/checkpoint/checkpointer.h"
 #include "opp/mapping/export/planar_exports.h"
 #include "opp/mapping/export/simplemap.h"
 #include "opp/mapping/io/atomic_file.h"
@@ -23,33 +24,67 @@
 #include <chrono>
 #include <filesystem>
 #include <ostream>
+#include <stdexcept>
+#include <string>
 #include <vector>
 
 namespace {
 
 using opp::apps::MapOptions;
+using opp::apps::Progress;
 
 double secondsSince(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
+using opp::mapping::Checkpointer;
 using opp::mapping::MappingRun;
 using opp::mapping::MapState;
 using opp::mapping::RunReport;
 
-void buildMap(const MapOptions& options, MappingRun& run) {
+/// Takes up what an interrupted run came to, if there is any.
+void resume(const MapOptions& options, const Checkpointer& checkpoints, MappingRun& run) {
+  Progress progress("resuming", "frames", Progress::modeFor(options.quiet));
+  if (!checkpoints.restore(run)) {
+    progress.log("nothing to resume in " + options.output.string() +
+                 ": starting from the beginning");
+  } else if (run.finished) {
+    progress.log("resuming: all is mapped, results are to be written");
+  } else {
+    const opp::mapping::SessionReport& session = run.report.sessions.back();
+    progress.log("resuming after " + std::to_string(session.frames_read) + " frames of " +
+                 session.path);
+  }
+}
+
+/// Without a checkpoint, for want of space say, the run does its work all the same.
+template <typename Write>
+void tryCheckpoint(Progress& progress, const Write& write) {
+  try {
+    write();
+  } catch (const std::runtime_error& error) {
+    progress.log(std::string("warning: no checkpoint for --resume: ") + error.what());
+  }
+}
+
+void buildMap(const MapOptions& options, Checkpointer& checkpoints, MappingRun& run) {
+  if (run.finished) return;
   opp::mapping::MapRawlogOptions input;
   input.selection = options.selection;
   input.threads = options.threads;
   if (options.initial_poses)
     input.initial_poses = opp::mapping::readTumTrajectory(*options.initial_poses);
-  opp::apps::Progress progress("mapping", "frames", opp::apps::Progress::modeFor(options.quiet));
-  for (const std::filesystem::path& rawlog : options.rawlogs) {
-    opp::mapping::mapRawlog(
-        rawlog, input, options.params.primitives,
-        [&](double fraction, std::size_t frames) { progress.update(fraction, frames); }, run);
+  Progress progress("mapping", "frames", Progress::modeFor(options.quiet));
+  const auto after_scan = [&](double fraction, std::size_t frames) {
+    progress.update(fraction, frames);
+    tryCheckpoint(progress, [&] { checkpoints.update(run); });
+  };
+  while (run.sessions_read < options.rawlogs.size()) {
+    opp::mapping::mapRawlog(options.rawlogs[run.sessions_read], input, options.params.primitives,
+                            after_scan, run);
   }
   opp::mapping::finishMapping(run);
+  tryCheckpoint(progress, [&] { checkpoints.save(run); });
   progress.finish();
   for (const std::string& warning : run.report.warnings) progress.log("warning: " + warning);
 }
@@ -57,7 +92,7 @@ void buildMap(const MapOptions& options, MappingRun& run) {
 void writeOccupancyMap(const MapOptions& options, const MapState& map, RunReport& report,
                        const std::filesystem::path& folder) {
   const auto start = std::chrono::steady_clock::now();
-  opp::apps::Progress progress("octomap", "frames", opp::apps::Progress::modeFor(options.quiet));
+  Progress progress("octomap", "frames", Progress::modeFor(options.quiet));
   opp::mapping::OccupancyMap octomap(options.params.occupancy);
   for (std::size_t session = 0; session < options.rawlogs.size(); ++session) {
     opp::mapping::insertRawlog(
@@ -127,20 +162,34 @@ void writeRun(const MapOptions& options, const RunReport& report,
   });
 }
 
+void writeResults(const MapOptions& options, MappingRun& run, const std::filesystem::path& folder) {
+  const auto maps = writeMaps(options, run, folder);
+  writeKeyframes(options, run.mapper.map(), run.report, folder);
+  if (options.octomap) writeOccupancyMap(options, run.mapper.map(), run.report, folder);
+  writeRun(options, run.report, folder);
+  opp::mapping::writeHtmlReport(
+      folder, opp::mapping::reportFigures(run.mapper, run.report, maps, options.params.planar));
+}
+
 void run(opp::apps::CommandLine& line) {
   const MapOptions options = opp::apps::parseOptions(line);
-  opp::mapping::OutputFolder output(options.output, options.force);
+  opp::mapping::OutputFolder output(options.output, options.force, options.resume);
   MappingRun mapped(options.params);
-  buildMap(options, mapped);
-  const auto maps = writeMaps(options, mapped, output.path());
-  writeKeyframes(options, mapped.mapper.map(), mapped.report, output.path());
-  if (options.octomap)
-    writeOccupancyMap(options, mapped.mapper.map(), mapped.report, output.path());
-  writeRun(options, mapped.report, output.path());
-  opp::mapping::writeHtmlReport(
-      output.path(),
-      opp::mapping::reportFigures(mapped.mapper, mapped.report, maps, options.params.planar));
-  output.commit();
+  Checkpointer checkpoints(output.checkpoint(),
+                           opp::mapping::identityOf(options.rawlogs, options.initial_poses,
+                                                    options.selection, options.params),
+                           options.params.checkpoint);
+  if (options.resume) resume(options, checkpoints, mapped);
+  try {
+    buildMap(options, checkpoints, mapped);
+    writeResults(options, mapped, output.path());
+    output.commit();
+  } catch (const std::exception& error) {
+    if (!std::filesystem::exists(output.checkpoint())) throw;
+    throw std::runtime_error(
+        opp::apps::userMessage(error) +
+        "; when that is mended, the same call with --resume goes on from here");
+  }
 }
 
 }  // namespace

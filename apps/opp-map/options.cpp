@@ -45,6 +45,8 @@ MapOptions parseOptions(CommandLine& line) {
   TCLAP::ValueArg<std::string> resolution("", "resolution",
                                           "Edge of an OctoMap voxel; sets occupancy.resolution",
                                           false, "", "metres", line);
+  TCLAP::SwitchArg resume("", "resume",
+                          "Go on where the same call was interrupted; if it was not, begin", line);
   ForceFlag force(line);
   ThreadsFlag threads(line);
   QuietFlag quiet(line);
@@ -63,6 +65,7 @@ MapOptions parseOptions(CommandLine& line) {
     setFromFlag("occupancy.resolution=" + resolution.getValue(), "--resolution", options.params);
   }
   options.octomap = !no_octomap.getValue();
+  options.resume = resume.getValue();
   options.force = force.getValue();
   options.quiet = quiet.getValue();
   options.threads = threads.count();

@@ -22,6 +22,7 @@ struct MapOptions {
   std::optional<std::filesystem::path> initial_poses;
   mapping::MapperParams params;
   bool octomap = true;
+  bool resume = false;
   bool force = false;
   bool quiet = false;
   int threads = 0;

@@ -76,6 +76,8 @@ TEST(UserMessage, KeepsOnlyTheMessageOfAnMrptException) {
             "File is broken");
   EXPECT_EQ(userMessage("plain text\n"), "plain text");
   EXPECT_EQ(userMessage(""), "");
+  EXPECT_EQ(userMessage(std::runtime_error("plain text\n")), "plain text");
+  EXPECT_EQ(userMessage(std::bad_alloc()), "out of memory");
 }
 
 TEST(Flags, ThreadsAreAtLeastOne) {

@@ -9,9 +9,13 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <cerrno>
+#include <chrono>
+#include <csignal>
 #include <cstring>
 #include <ostream>
 #include <stdexcept>
+#include <thread>
 
 namespace opp::test {
 namespace {
@@ -35,19 +39,9 @@ class SpawnActions {
   posix_spawn_file_actions_t actions_{};
 };
 
-int waitForExitCode(pid_t child) {
-  int status = 0;
-  while (waitpid(child, &status, 0) < 0) {
-    if (errno != EINTR) throw std::runtime_error(std::string("waitpid: ") + std::strerror(errno));
-  }
-  return WIFSIGNALED(status) ? 128 + WTERMSIG(status) : WEXITSTATUS(status);
-}
-
-}  // namespace
-
-CommandResult runCommand(const std::vector<std::string>& command,
-                         const std::filesystem::path& working_folder) {
-  const TempFolder outputs;
+/// Starts the command, its output going to files `out` and `err` of a folder.
+pid_t start(const std::vector<std::string>& command, const TempFolder& outputs,
+            const std::filesystem::path& working_folder) {
   SpawnActions actions;
   actions.open(STDIN_FILENO, "/dev/null", O_RDONLY);
   actions.open(STDOUT_FILENO, (outputs / "out").string(), O_WRONLY | O_CREAT);
@@ -64,11 +58,48 @@ CommandResult runCommand(const std::vector<std::string>& command,
   if (error != 0) {
     throw std::runtime_error("cannot run " + command.at(0) + ": " + std::strerror(error));
   }
-  CommandResult result;
-  result.exit_code = waitForExitCode(child);
-  result.out = readFile(outputs / "out");
-  result.err = readFile(outputs / "err");
-  return result;
+  return child;
+}
+
+/// Whether the child has ended, and how. \param options of waitpid
+bool hasEnded(pid_t child, int options, int& status) {
+  for (;;) {
+    const pid_t ended = waitpid(child, &status, options);
+    if (ended >= 0) return ended == child;
+    if (errno != EINTR) throw std::runtime_error(std::string("waitpid: ") + std::strerror(errno));
+  }
+}
+
+CommandResult resultOf(int status, const TempFolder& outputs) {
+  const int exit_code = WIFSIGNALED(status) ? 128 + WTERMSIG(status) : WEXITSTATUS(status);
+  return {exit_code, readFile(outputs / "out"), readFile(outputs / "err")};
+}
+
+}  // namespace
+
+CommandResult runCommand(const std::vector<std::string>& command,
+                         const std::filesystem::path& working_folder) {
+  const TempFolder outputs;
+  int status = 0;
+  hasEnded(start(command, outputs, working_folder), 0, status);
+  return resultOf(status, outputs);
+}
+
+CommandResult runCommandUntil(const std::function<bool()>& enough,
+                              const std::vector<std::string>& command) {
+  const TempFolder outputs;
+  const pid_t child = start(command, outputs, {});
+  int status = 0;
+  while (!hasEnded(child, WNOHANG, status)) {
+    if (!enough()) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+      continue;
+    }
+    kill(child, SIGKILL);
+    hasEnded(child, 0, status);
+    break;
+  }
+  return resultOf(status, outputs);
 }
 
 std::string appPath(const std::string& name) { return std::string(OPP_APPS_FOLDER "/") + name; }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <iosfwd>
 #include <string>
 #include <vector>
@@ -25,6 +26,11 @@ std::ostream& operator<<(std::ostream& os, const CommandResult& result);
 /// \throws std::runtime_error if the program cannot be started.
 CommandResult runCommand(const std::vector<std::string>& command,
                          const std::filesystem::path& working_folder = {});
+
+/// The same for a program that is killed as soon as `enough` is true, unless it ends before; exit
+/// code 128 + SIGKILL then. \param enough is asked every millisecond.
+CommandResult runCommandUntil(const std::function<bool()>& enough,
+                              const std::vector<std::string>& command);
 
 /// Path of a program of this build, e.g. appPath("opp-map"). The test's CMake target must be made
 /// by opp_add_app_tests, which builds the programs first.
