@@ -106,6 +106,31 @@ TEST(BuildPlaneGraph, ParallelSurfacesStayApart) {
   }
 }
 
+TEST(BuildPlaneGraph, SurfacesOfUnlikeHeightSideBySideAreNotOneSlantedPlane) {
+  for (std::uint64_t seed = 0; seed < 50; ++seed) {
+    SCOPED_TRACE(seed);
+    test::Random random(seed);
+    // Farther apart than reference points look: a plane that slants by half a degree passes
+    // through both and leaves 1 mm or more at their rims, five times the noise.
+    const double step = random.uniform(0.011, 0.014);
+    const test::Rectangles tops{{{0.0, 0.0, 0.0}, {0.2, 0.0, 0.0}, {0.0, 0.3, 0.0}},
+                                {{1.2, 0.0, step}, {0.2, 0.0, 0.0}, {0.0, 0.3, 0.0}}};
+    test::SyntheticOptions options;
+    options.spacing = 0.02;
+    options.sigma = 0.0002;
+    options.normal_sigma = degToRad(2.0);
+    options.seed = seed;
+    const test::SyntheticScene scene =
+        test::sampleScene(tops, {0.6, 0.0, 2.0}, random.pose(1.0), options);
+    const PlaneGraph graph = graphOf(scene.cloud);
+    EXPECT_EQ(graph.nodes.size(), 2U);
+    for (const PlaneNode& node : graph.nodes) {
+      // 600 samples over 0.4 × 0.6 m: 0.004°; 0.2 mm at the origin, up to 3 m away. Fivefold.
+      EXPECT_GE(matchOf(scene, node.plane, degToRad(0.02), 0.001), 0) << node.plane;
+    }
+  }
+}
+
 TEST(BuildPlaneGraph, SignsOfNormalsDoNotMatter) {
   for (std::uint64_t seed = 0; seed < 5; ++seed) {
     test::SyntheticOptions options;

@@ -106,7 +106,8 @@ void assignAndFit(Builder& builder) {
 /// Would the samples of both clusters still lie within the noise of their common plane? Tested for
 /// each part, so that a large plane cannot swallow a small parallel one. Two copies of one plane
 /// share its samples, each having the nearer ones: at worst these spread evenly over the gate, with
-/// variance gate²/3. Parallel surfaces more than 2 gate / √3 apart always stay two.
+/// variance gate²/3. Parallel surfaces more than 2 gate / √3 apart always stay two. Side by side
+/// even nearer ones do: the slanted plane through both fits either much worse than its own.
 bool mergeable(const Builder& builder, const Cluster& a, const Cluster& b) {
   if (std::abs(a.plane.normal().dot(b.plane.normal())) < std::cos(builder.params.merge_angle)) {
     return false;
@@ -117,7 +118,9 @@ bool mergeable(const Builder& builder, const Cluster& a, const Cluster& b) {
   const auto fits = [&](const Cluster& part) {
     const double sigma = std::sqrt(part.samples / part.moments.weight());
     const double gate = builder.params.noise_gate * sigma + builder.params.flatness * part.spacing;
-    return part.moments.squaredError(plane) < part.moments.weight() * gate * gate / 3.0;
+    const double own = part.moments.squaredError(part.plane);
+    const double common = part.moments.squaredError(plane);
+    return common <= kOneSurface * own && common < part.moments.weight() * gate * gate / 3.0;
   };
   return fits(a) && fits(b);
 }

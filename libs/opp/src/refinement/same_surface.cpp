@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "refinement/same_surface.h"
 
+#include "graph/plane_support.h"
 #include "refinement/plane_bookkeeping.h"
 
 #include <Eigen/Geometry>
@@ -14,10 +15,6 @@
 namespace opp {
 namespace {
 
-/// One surface that nearest-plane assignment cuts in two: each half of a Gaussian has a mean square
-/// of 0.36 σ² about its own plane and of 1 σ² about the common one, 2.8 times as much. Two surfaces
-/// that `splitLayers` tells apart have at least 6 times as much.
-constexpr double kOneSurface = 4.0;
 /// Samples adjoin that lie no farther apart than this many of their extents (a diagonal is √2).
 constexpr double kAdjoin = 1.5;
 /// Pieces adjoin along at least this many pairs of samples; fewer tell nothing.
