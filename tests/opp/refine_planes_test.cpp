@@ -3,6 +3,7 @@
 #include "opp/refinement/refine_planes.h"
 
 #include "opp/geometry/constants.h"
+#include "opp/graph/graph_params.h"
 
 #include "support/random.h"
 #include "support/refined_scene.h"
@@ -182,6 +183,31 @@ TEST(RefinePlanes, MergesTwoPlanesOfOneSurfaceAndTheirEdges) {
   ASSERT_EQ(result.edges.size(), 12U);
   EXPECT_EQ(result.edges[0].planes, (std::array<int, 2>{0, 2}));
   EXPECT_EQ(result.edges[0].votes, 6.0);
+}
+
+TEST(RefinePlanes, FindsTheEdgesThatTheRoughGraphLacks) {
+  const GraphParams params;
+  test::Random random(16);
+  for (int k = 0; k < 50; ++k) {
+    const Eigen::Vector3d half(random.uniform(0.8, 3.0), random.uniform(0.8, 3.0),
+                               random.uniform(0.8, 3.0));
+    const SyntheticScene scene =
+        sampled(test::roomSides(-half, half), random.uniform(0.0, 0.01), random);
+    PlaneGraph rough = test::roughGraph(scene, degToRad(3.0), 0.03, random);
+    rough.edges.resize(static_cast<std::size_t>(random.uniform(0.0, 12.0)));
+    const std::size_t given = rough.edges.size();
+    const auto edgesOf = [&](const PlaneGraph& graph) {
+      return refinePlanes(scene.cloud, graph, SensorModel(), test::undistortedSensor()).edges;
+    };
+    EXPECT_EQ(edgesOf(rough).size(), given) << k;  // without a rule none is added
+    rough.meeting = {params.orthogonality, params.edge_reach, params.min_edge_length};
+    const std::vector<OrthogonalityEdge> edges = edgesOf(rough);
+    ASSERT_EQ(edges.size(), scene.edges.size()) << k;
+    for (std::size_t i = 0; i < edges.size(); ++i) {
+      EXPECT_EQ(edges[i].planes, scene.edges[i]) << k;
+      EXPECT_EQ(edges[i].votes, i < given ? 1.0 : 0.0) << k;
+    }
+  }
 }
 
 TEST(RefinePlanes, KeepsParallelSurfacesThatNoiseCanTellApart) {

@@ -201,19 +201,17 @@ Eigen::MatrixXd edgeVotes(Builder& builder) {
 
 /// Edges of all pairs that are orthogonal and meet where there are samples. Votes are counted, not
 /// required: between two small planes there may be no reference point.
-std::vector<OrthogonalityEdge> findEdges(Builder& builder) {
+std::vector<OrthogonalityEdge> findEdges(Builder& builder, const MeetingRule& rule) {
   const auto samples = samplesOf(builder);
   const Eigen::MatrixXd votes = edgeVotes(builder);
   std::vector<OrthogonalityEdge> edges;
   for (std::size_t a = 0; a < builder.clusters.size(); ++a) {
     for (std::size_t b = a + 1; b < builder.clusters.size(); ++b) {
-      const Plane &plane_a = builder.clusters[a].plane, &plane_b = builder.clusters[b].plane;
-      const double cosine = plane_a.normal().dot(plane_b.normal());
-      if (std::abs(cosine) > std::sin(builder.params.orthogonality)) continue;
-      const double length = commonEdgeLength(
-          builder.cloud, {plane_a, samples[a], builder.clusters[a].spacing},
-          {plane_b, samples[b], builder.clusters[b].spacing}, builder.params.edge_reach);
-      if (length < builder.params.min_edge_length) continue;
+      const Cluster &cluster_a = builder.clusters[a], &cluster_b = builder.clusters[b];
+      if (!meet(builder.cloud, {cluster_a.plane, samples[a], cluster_a.spacing},
+                {cluster_b.plane, samples[b], cluster_b.spacing}, rule)) {
+        continue;
+      }
       edges.push_back({{static_cast<int>(a), static_cast<int>(b)},
                        votes(static_cast<Eigen::Index>(a), static_cast<Eigen::Index>(b))});
     }
@@ -242,7 +240,8 @@ PlaneGraph buildPlaneGraph(const OrientedCloud& cloud, const OppHypotheses& hypo
     graph.nodes.push_back(
         {cluster.plane, cluster.moments, cluster.votes, cluster.reach, cluster.spacing});
   }
-  graph.edges = findEdges(builder);
+  graph.meeting = {params.orthogonality, params.edge_reach, params.min_edge_length};
+  graph.edges = findEdges(builder, graph.meeting);
   return graph;
 }
 

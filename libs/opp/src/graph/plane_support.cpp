@@ -166,4 +166,11 @@ double commonEdgeLength(const OrientedCloud& cloud, const EdgeSide& a, const Edg
   return static_cast<double>(std::min(countNear(cells_a, cells_b), countNear(cells_b, cells_a)));
 }
 
+bool meet(const OrientedCloud& cloud, const EdgeSide& a, const EdgeSide& b,
+          const MeetingRule& rule) {
+  const double cosine = a.plane.normal().dot(b.plane.normal());
+  if (std::abs(cosine) > std::sin(rule.orthogonality)) return false;
+  return commonEdgeLength(cloud, a, b, rule.reach) >= rule.min_length;
+}
+
 }  // namespace opp

@@ -5,6 +5,7 @@
 #include "opp/geometry/plane.h"
 #include "opp/geometry/point_cloud.h"
 #include "opp/graph/graph_params.h"
+#include "opp/graph/plane_graph.h"
 
 #include <vector>
 
@@ -44,5 +45,10 @@ struct EdgeSide {
 /// planes.
 double commonEdgeLength(const OrientedCloud& cloud, const EdgeSide& a, const EdgeSide& b,
                         double reach);
+
+/// Whether the planes are orthogonal and meet where there are samples. O(samples of both), and of
+/// planes that are not orthogonal O(1).
+bool meet(const OrientedCloud& cloud, const EdgeSide& a, const EdgeSide& b,
+          const MeetingRule& rule);
 
 }  // namespace opp

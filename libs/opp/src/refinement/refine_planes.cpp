@@ -5,6 +5,7 @@
 #include "opp/refinement/find_structure.h"
 #include "opp/refinement/solve_normals.h"
 
+#include "graph/plane_support.h"
 #include "refinement/candidates.h"
 #include "refinement/joint_problem.h"
 #include "refinement/plane_bookkeeping.h"
@@ -51,6 +52,7 @@ class Refiner {
         samples_(inOrder(weightedSamples(cloud, sensor), blocks_.order())),
         search_(blocks_, samples_),
         edges_(graph.edges),
+        meeting_(graph.meeting),
         labels_(cloud.size(), -1) {
     for (const PlaneNode& node : graph.nodes) {
       const double weight = node.moments.weight();
@@ -72,6 +74,7 @@ class Refiner {
     fitTogether(kRoughPasses);
     for (int k = 0; k < kMaxRestructurings && restructure(); ++k) fitTogether(kRoughPasses);
     if (!converged_) fitTogether(params_.max_iterations);
+    addMeetings();
     if (restructure()) fitTogether(params_.max_iterations);
     return collect();
   }
@@ -158,6 +161,39 @@ class Refiner {
     return changed;
   }
 
+  /// The samples of each plane, by their index in the cloud.
+  std::vector<std::vector<int>> samplesInCloud() const {
+    std::vector<std::vector<int>> samples(fits_.size());
+    for (Index i = 0; i < labels_.size(); ++i) {
+      if (labels_[i] < 0) continue;
+      samples[static_cast<Index>(labels_[i])].push_back(static_cast<int>(blocks_.order()[i]));
+    }
+    return samples;
+  }
+
+  /// Adds edges between planes that meet only now: those of the graph were rough, and some had not
+  /// yet the samples that other planes have lost since.
+  void addMeetings() {
+    std::vector<std::array<int, 2>> known;
+    for (const OrthogonalityEdge& edge : edges_) known.push_back(edge.planes);
+    std::sort(known.begin(), known.end());
+    const std::vector<std::vector<int>> samples = samplesInCloud();
+    std::vector<EdgeSide> sides;
+    for (Index k = 0; k < fits_.size(); ++k) {
+      sides.push_back({fits_[k].plane, samples[k], meanExtent(cloud_, samples[k])});
+    }
+    for (Index a = 0; a < fits_.size(); ++a) {
+      for (Index b = a + 1; b < fits_.size(); ++b) {
+        const std::array<int, 2> planes{static_cast<int>(a), static_cast<int>(b)};
+        if (std::binary_search(known.begin(), known.end(), planes)) continue;
+        if (samples[a].empty() || samples[b].empty()) continue;
+        if (meet(cloud_, sides[a], sides[b], meeting_)) edges_.push_back({planes, 0.0});
+      }
+    }
+    std::stable_sort(edges_.begin(), edges_.end(),
+                     [](const auto& a, const auto& b) { return a.planes < b.planes; });
+  }
+
   /// Sets the plane to ±normal through its samples' mean; true if it hardly moved.
   bool move(PlaneFit& fit, const Eigen::Vector3d& normal) const {
     const double slack = fit.slack;
@@ -212,6 +248,7 @@ class Refiner {
   std::vector<WeightedSample> samples_;  ///< in the order of the blocks, as labels_
   CandidateSearch search_;
   std::vector<OrthogonalityEdge> edges_;
+  MeetingRule meeting_;
   std::vector<int> labels_;
   std::vector<PlaneFit> fits_;
   PlaneStructure structure_;

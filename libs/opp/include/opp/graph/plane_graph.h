@@ -8,6 +8,7 @@
 
 #include <Eigen/Geometry>
 
+#include <limits>
 #include <vector>
 
 namespace opp {
@@ -21,12 +22,20 @@ struct PlaneNode {
   double spacing = 0.0;       ///< mean extent of its samples [m]
 };
 
+/// When two orthogonal planes meet. The default never says so.
+struct MeetingRule {
+  double orthogonality = 0.0;  ///< [rad] largest deviation from a right angle
+  double reach = 0.0;          ///< samples are beside the common line within so many extents
+  double min_length = std::numeric_limits<double>::infinity();  ///< of the line, in extents
+};
+
 /// Planes and their orthogonality, as voting and clustering give them (Sommer et al. 2020, III-c).
 /// Nodes without an edge are lone planes.
 struct PlaneGraph {
   std::vector<PlaneNode> nodes;
   std::vector<OrthogonalityEdge>
-      edges;  ///< indices into nodes; each pair at most once, in ascending order
+      edges;            ///< indices into nodes; each pair at most once, in ascending order
+  MeetingRule meeting;  ///< what makes an edge: planes that move may come to meet
 };
 
 }  // namespace opp
