@@ -11,6 +11,8 @@
 #include <array>
 #include <cmath>
 #include <tuple>
+#include <utility>
+#include <vector>
 
 namespace opp {
 namespace {
@@ -54,6 +56,13 @@ bool adjoin(const Place& a, const Place& b) {
   const double along = b.along - a.along, across = b.across - a.across;
   const double extent = std::max(a.squared_extent, b.squared_extent);
   return along * along + across * across <= kAdjoin * kAdjoin * extent;
+}
+
+/// Places that adjoin are no farther apart than this [m].
+double reachOf(const std::vector<Place>& places) {
+  double largest = 0.0;
+  for (const Place& place : places) largest = std::max(largest, place.squared_extent);
+  return kAdjoin * std::sqrt(largest);
 }
 
 /// visit(i, j), i before j, for all samples that adjoin; they are in the same or in the next row.
@@ -136,7 +145,6 @@ bool SameSurface::goesOn(std::size_t a, std::size_t b, const Eigen::Vector3d& no
   std::vector<Place> places;
   places.reserve(members_[a].size() + members_[b].size());
   std::array<Eigen::AlignedBox2d, 2> boxes;
-  double largest_area = 0.0;
   for (const std::size_t plane : {a, b}) {
     for (const std::uint32_t i : members_[plane]) {
       const WeightedSample& sample = samples_[i];
@@ -145,30 +153,31 @@ bool SameSurface::goesOn(std::size_t a, std::size_t b, const Eigen::Vector3d& no
       places.push_back({0.0, place.x(), place.y(), normal.dot(sample.point), sample.area,
                         plane == a ? 1 : -1, 0});
       boxes[plane == a ? 0 : 1].extend(place);
-      largest_area = std::max(largest_area, sample.area);
     }
   }
-  const double reach = kAdjoin * std::sqrt(largest_area);
+  keepWherePlanesMeet(boxes, reachOf(places), places);
+  const double reach = reachOf(places);
   if (!(reach > 0.0)) return false;  // samples without an extent adjoin nothing
-  keepWherePlanesMeet(boxes, reach, places);
   for (Place& place : places) place.row = std::floor(place.across / reach);
   std::sort(places.begin(), places.end(), [](const Place& p, const Place& q) {
     return std::tie(p.row, p.along, p.across) < std::tie(q.row, q.along, q.across);
   });
+  std::vector<std::pair<std::size_t, std::size_t>> adjoining;
   visitAdjoining(places, reach, [&](std::size_t i, std::size_t j) {
     places[i].side += places[j].label;
     places[j].side += places[i].label;
+    adjoining.emplace_back(i, j);
   });
   // A sample's own label depends on its own error, which would show as a step.
   double pairs = 0.0, jumps = 0.0, squares = 0.0;
-  visitAdjoining(places, reach, [&](std::size_t i, std::size_t j) {
-    if (places[i].side == 0 || places[j].side == 0) return;
-    if ((places[i].side > 0) == (places[j].side > 0)) return;
+  for (const auto& [i, j] : adjoining) {
+    if (places[i].side == 0 || places[j].side == 0) continue;
+    if ((places[i].side > 0) == (places[j].side > 0)) continue;
     const double jump = places[j].offset - places[i].offset;
     jumps += places[j].side > 0 ? jump : -jump;
     squares += jump * jump;
     pairs += 1.0;
-  });
+  }
   if (pairs < kLeastPairs) return false;
   const double mean = jumps / pairs;
   // Along a border each sample has three partners on the other side.
