@@ -63,6 +63,8 @@ TEST(MotionBetween, ChainsExpectationsThroughAPartBetween) {
 
 TEST(MotionBetween, ErrorsOfAChainAreAsLargeAsThoseOfItsWaysTogether) {
   // Denied as rarely as it should be, and a shift by seven standard deviations nearly always.
+  MapperParams params;
+  params.loop.agree_translation = params.loop.agree_rotation = 1e-4;
   int allowed = 0, allowed_aside = 0;
   constexpr int kSeeds = 300;
   for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
@@ -74,7 +76,7 @@ TEST(MotionBetween, ErrorsOfAChainAreAsLargeAsThoseOfItsWaysTogether) {
       for (int i = 0; i < 6; ++i) error[i] = random.normal() * (i < 3 ? kTurn : kShift);
       ways[k] = retract(chain.expected[k], error);
     }
-    const MotionBetween motion(chain.parts, 0, 2, MapperParams());
+    const MotionBetween motion(chain.parts, 0, 2, params);
     allowed += motion.allows(chain.firstFromLast(ways[0], ways[1])) ? 1 : 0;
     Eigen::Isometry3d aside = chain.expected[0];
     aside.translation().z() += 10.0 * kShift;
@@ -83,6 +85,41 @@ TEST(MotionBetween, ErrorsOfAChainAreAsLargeAsThoseOfItsWaysTogether) {
   // P(χ² of three numbers <= 9.2) = .973, and nearly no pose beyond fails the limit of six.
   EXPECT_NEAR(static_cast<double>(allowed) / kSeeds, 0.973, 0.03);
   EXPECT_LT(static_cast<double>(allowed_aside) / kSeeds, 0.03);
+}
+
+TEST(MotionBetween, ExpectsOnlyWhatItTellsWellEnough) {
+  for (const double sigma : {0.3, 1.0}) {
+    Chain chain(5);
+    chain.parts[1].history.beginnings.front().information.bottomRightCorner<3, 3>() =
+        Eigen::Matrix3d::Identity() / (sigma * sigma);
+    const MotionBetween motion(chain.parts, 0, 1, MapperParams());
+    Eigen::Isometry3d way = chain.expected[0];
+    const auto pose = [&] {
+      return Eigen::Isometry3d(lastOf(chain.parts[0]) * way * firstOf(chain.parts[1]).inverse());
+    };
+    // Three standard deviations within 2 m.
+    EXPECT_EQ(motion.expects(pose()), sigma < 0.66);
+    EXPECT_TRUE(motion.allows(pose()));
+    way.translation().x() += 4.0;
+    EXPECT_FALSE(motion.expects(pose()));
+  }
+  Chain silent(5);
+  for (MapPart& part : silent.parts) part.history.beginnings.clear();
+  EXPECT_FALSE(MotionBetween(silent.parts, 0, 1, MapperParams())
+                   .expects(lastOf(silent.parts[0]) * silent.expected[0] *
+                            firstOf(silent.parts[1]).inverse()));
+}
+
+TEST(MotionBetween, IsNoFinerThanClaimsAre) {
+  Chain chain(3);
+  chain.parts[1].history.beginnings.front().information *= 1e6;
+  const MotionBetween motion(chain.parts, 0, 1, MapperParams());
+  for (const double off : {0.05, 1.0}) {
+    Eigen::Isometry3d way = chain.expected[0];
+    way.translation().x() += off;
+    EXPECT_EQ(motion.allows(lastOf(chain.parts[0]) * way * firstOf(chain.parts[1]).inverse()),
+              off < 0.1);
+  }
 }
 
 TEST(MotionBetween, WithoutExpectationsOnlyTheSpeedCounts) {

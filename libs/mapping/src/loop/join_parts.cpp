@@ -136,16 +136,30 @@ class Joiner {
                       agreement.a_from_b(), params_) > params_.global_alignment.max_conflict;
   }
 
+  /// What enough keyframes claim of two parts: fewer where motion says the same.
+  std::vector<PlaceClaim> agreed(Index a, Index b, const std::vector<PlaceClaim>& claims) const {
+    const auto agreedBy = [&](int confirmations) {
+      ClaimPool pool(params_.loop, confirmations);
+      for (const PlaceClaim& c : claims) pool.add(c);
+      return pool.agreed();
+    };
+    std::vector<PlaceClaim> result = agreedBy(params_.loop.join_confirmations);
+    if (!result.empty()) return result;
+    result = agreedBy(params_.loop.confirmations);
+    if (!result.empty() &&
+        !MotionBetween(parts_, a, b, params_).expects(result.front().map_a_from_map_b))
+      result.clear();
+    return result;
+  }
+
   /// What is claimed of each two parts, what most keyframes claim first.
   std::vector<SharedClaim> agreements() const {
-    std::map<std::pair<Index, Index>, ClaimPool> pools;
-    for (const PartClaim& c : claims_)
-      pools.try_emplace({c.a, c.b}, params_.loop, params_.loop.join_confirmations)
-          .first->second.add(c.claim);
+    std::map<std::pair<Index, Index>, std::vector<PlaceClaim>> claims;
+    for (const PartClaim& c : claims_) claims[{c.a, c.b}].push_back(c.claim);
     std::vector<SharedClaim> result;
-    for (const auto& [between, pool] : pools) {
-      std::vector<PlaceClaim> agreed = pool.agreed();
-      if (!agreed.empty()) result.push_back({between.first, between.second, std::move(agreed)});
+    for (const auto& [between, about] : claims) {
+      std::vector<PlaceClaim> shared = agreed(between.first, between.second, about);
+      if (!shared.empty()) result.push_back({between.first, between.second, std::move(shared)});
     }
     std::stable_sort(result.begin(), result.end(), [](const SharedClaim& x, const SharedClaim& y) {
       return claimantsOf(x.claims) > claimantsOf(y.claims);

@@ -17,6 +17,9 @@ namespace {
 
 using Index = std::size_t;
 
+/// So many standard deviations bound what is possible.
+constexpr double kSigmas = 3.0;
+
 std::optional<Eigen::Isometry3d> poseAt(const MapState& map, const ScanId& id) {
   const auto found = std::find_if(map.scans.begin(), map.scans.end(),
                                   [&](const LocalizedScan& s) { return s.id() == id; });
@@ -71,12 +74,15 @@ std::vector<ExpectedBeginning> expectedBeginnings(const std::vector<MapPart>& pa
   return result;
 }
 
-/// Whether a pose is where it was expected.
-bool isExpected(const ExpectedBeginning& beginning, const Eigen::Isometry3d& last_from_first) {
+/// Whether a claimed pose is where it was expected. \param tolerance variances of (ω, v) within
+/// which claims are one: neither they nor the parts are as exact as what ties two scans.
+bool isExpected(const ExpectedBeginning& beginning, const Eigen::Isometry3d& last_from_first,
+                const Vector6d& tolerance) {
   const Vector6d error = difference(beginning.last_from_first, last_from_first);
-  if (error.dot(beginning.information * error) > kPossible) return false;
+  Matrix6d covariance = covarianceOf(beginning.information);
+  covariance.diagonal() += tolerance;
+  if (error.dot(covariance.ldlt().solve(error)) > kPossible) return false;
   // Rooms repeat: what resembles a place is rather the next of its kind if motion speaks for that.
-  const Matrix6d covariance = covarianceOf(beginning.information);
   const Eigen::Vector3d shift = error.tail<3>();
   return shift.dot(covariance.bottomRightCorner<3, 3>().ldlt().solve(shift)) <= kClearly;
 }
@@ -84,7 +90,10 @@ bool isExpected(const ExpectedBeginning& beginning, const Eigen::Isometry3d& las
 }  // namespace
 
 MotionBetween::MotionBetween(const std::vector<MapPart>& parts, Index a, Index b,
-                             const MapperParams& params) {
+                             const MapperParams& params)
+    : search_distance_(params.loop.search_distance) {
+  tolerance_ << Eigen::Vector3d::Constant(params.loop.agree_rotation * params.loop.agree_rotation),
+      Eigen::Vector3d::Constant(params.loop.agree_translation * params.loop.agree_translation);
   addPassages(parts[a].map, parts[b].map, params);
   addExpectations(parts, a, b, true);
   addExpectations(parts, b, a, false);
@@ -104,7 +113,6 @@ void MotionBetween::addPassages(const MapState& a, const MapState& b, const Mapp
     stops.push_back({s.id(), s.timestamp, true, poseOf(b, s).translation()});
   std::sort(stops.begin(), stops.end(),
             [](const Stop& x, const Stop& y) { return x.scan < y.scan; });
-  constexpr double kSigmas = 3.0;
   for (Index k = 1; k < stops.size(); ++k) {
     const Stop &from = stops[k - 1], &to = stops[k];
     if (from.in_b == to.in_b || from.scan.first != to.scan.first) continue;
@@ -124,17 +132,28 @@ void MotionBetween::addExpectations(const std::vector<MapPart>& parts, Index ear
   }
 }
 
+bool MotionBetween::isMet(const Expectation& e, const Eigen::Isometry3d& a_from_b) const {
+  const Eigen::Isometry3d earlier_from_later = e.begins_b ? a_from_b : a_from_b.inverse();
+  return isExpected(e.beginning,
+                    e.earlier_from_last.inverse() * earlier_from_later * e.later_from_first,
+                    tolerance_);
+}
+
 bool MotionBetween::allows(const Eigen::Isometry3d& a_from_b) const {
-  const auto reached = [&](const Passage& p) {
-    return (p.position_in_a - a_from_b * p.position_in_b).norm() <= p.reach;
-  };
-  const auto expected = [&](const Expectation& e) {
-    const Eigen::Isometry3d earlier_from_later = e.begins_b ? a_from_b : a_from_b.inverse();
-    return isExpected(e.beginning,
-                      e.earlier_from_last.inverse() * earlier_from_later * e.later_from_first);
-  };
-  return std::all_of(passages_.begin(), passages_.end(), reached) &&
-         std::all_of(expectations_.begin(), expectations_.end(), expected);
+  return std::all_of(passages_.begin(), passages_.end(),
+                     [&](const Passage& p) {
+                       return (p.position_in_a - a_from_b * p.position_in_b).norm() <= p.reach;
+                     }) &&
+         std::all_of(expectations_.begin(), expectations_.end(),
+                     [&](const Expectation& e) { return isMet(e, a_from_b); });
+}
+
+bool MotionBetween::expects(const Eigen::Isometry3d& a_from_b) const {
+  return std::any_of(expectations_.begin(), expectations_.end(), [&](const Expectation& e) {
+    const Matrix6d covariance = covarianceOf(e.beginning.information);
+    const double sigma = std::sqrt(largestVariance(covariance.bottomRightCorner<3, 3>()));
+    return kSigmas * sigma <= search_distance_ && isMet(e, a_from_b);
+  });
 }
 
 }  // namespace opp::mapping

@@ -22,6 +22,10 @@ class MotionBetween {
   /// Whether the body can have moved so if `a_from_b` is right. O(passages + beginnings).
   bool allows(const Eigen::Isometry3d& a_from_b) const;
 
+  /// Whether it is where the body was expected, and that to within `LoopParams::search_distance`:
+  /// what motion says then is evidence of its own. O(beginnings).
+  bool expects(const Eigen::Isometry3d& a_from_b) const;
+
  private:
   /// The body went from one part to the other.
   struct Passage {
@@ -41,6 +45,10 @@ class MotionBetween {
   void addExpectations(const std::vector<MapPart>& parts, std::size_t earlier, std::size_t later,
                        bool begins_b);
 
+  bool isMet(const Expectation& expectation, const Eigen::Isometry3d& a_from_b) const;
+
+  Vector6d tolerance_;      ///< variances of a claim's (ω, v)
+  double search_distance_;  ///< [m]
   std::vector<Passage> passages_;
   std::vector<Expectation> expectations_;
 };
