@@ -18,15 +18,6 @@ using testing::HasSubstr;
 
 const RunIdentity kIdentity = {{"--every", "1"}, {"rawlog 1", "a.rawlog"}};
 
-/// A body that turns on a circle.
-Eigen::Isometry3d poseAt(int step) {
-  const double phase = 0.06 * step;
-  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
-  pose.translation() = Eigen::Vector3d(0.5 * std::cos(phase) - 0.5, 0.5 * std::sin(phase), 1.2);
-  pose.linear() = Eigen::AngleAxisd(phase, Eigen::Vector3d::UnitZ()).toRotationMatrix();
-  return pose;
-}
-
 /// All that can happen to a run, scan by scan: it is lost when it comes to another room, and maps a
 /// second session.
 class Journey {
@@ -35,7 +26,7 @@ class Journey {
 
   Journey() {
     for (int step = 0; step < kScans; ++step) {
-      scans_.push_back(test::scanOfRoom(roomAt(step), step, poseAt(step)));
+      scans_.push_back(test::scanOfRoom(roomAt(step), step, test::poseOnCircle(step)));
       scans_.back().session = sessionAt(step);
       scans_.back().scan_index = static_cast<std::size_t>(step);
     }
@@ -43,7 +34,7 @@ class Journey {
 
   FrameResult map(int step, MappingRun& run) const {
     const ScanFeatures& scan = scans_[static_cast<std::size_t>(step)];
-    if (step == 0) run.mapper.setInitialPose(poseAt(0));
+    if (step == 0) run.mapper.setInitialPose(test::poseOnCircle(0));
     if (step == kSecondSession) run.mapper.startSession();
     run.report.sessions.resize(static_cast<std::size_t>(sessionAt(step)) + 1);
     SessionReport& session = run.report.sessions.back();
@@ -51,7 +42,7 @@ class Journey {
     session.scans.push_back({scan.scan_index, scan.timestamp});
     // Odometry comes and goes.
     std::optional<Eigen::Isometry3d> odom_from_body;
-    if (step / 8 % 2 == 1) odom_from_body = poseAt(step);
+    if (step / 8 % 2 == 1) odom_from_body = test::poseOnCircle(step);
     return run.mapper.add(scan, odom_from_body);
   }
 
@@ -93,7 +84,7 @@ class CheckpointFile : public testing::Test {
   /// A run of a few scans.
   std::string someBytes() const {
     MappingRun run{MapperParams()};
-    run.mapper.add(test::scanOfRoom(1, 0, poseAt(0)), std::nullopt);
+    run.mapper.add(test::scanOfRoom(1, 0, test::poseOnCircle(0)), std::nullopt);
     run.report.sessions.emplace_back().path = "a.rawlog";
     return bytesOf(run);
   }

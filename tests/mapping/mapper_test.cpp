@@ -15,27 +15,8 @@
 namespace opp::mapping {
 namespace {
 
-constexpr double kTimeStep = 0.1;
-
-/// A body that walks a circle through the furnished room and sees all around.
-Eigen::Isometry3d poseAt(int step) {
-  const double phase = 0.06 * step;
-  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
-  pose.translation() = Eigen::Vector3d(0.5 * std::cos(phase) - 0.5, 0.5 * std::sin(phase), 1.2);
-  pose.linear() = Eigen::AngleAxisd(phase, Eigen::Vector3d::UnitZ()).toRotationMatrix();
-  return pose;
-}
-
 ScanFeatures scanAt(int step, std::uint64_t room, double sigma) {
-  test::SyntheticOptions options;
-  options.spacing = 0.08;
-  options.sigma = sigma;
-  options.seed = static_cast<std::uint64_t>(step);
-  const Eigen::Isometry3d scene_from_body = poseAt(step);
-  ScanFeatures scan =
-      test::trueFeatures(test::sampleScene(test::furnishedRoom(room), scene_from_body.translation(),
-                                           scene_from_body.inverse(), options));
-  scan.timestamp = kTimeStep * step;
+  ScanFeatures scan = test::scanOfRoom(room, step, test::poseOnCircle(step), sigma);
   scan.scan_index = static_cast<std::size_t>(step);
   return scan;
 }
@@ -44,8 +25,8 @@ ScanFeatures scanAt(int step, std::uint64_t room, double sigma) {
 std::pair<double, double> worstErrors(const Trajectory& trajectory) {
   std::pair<double, double> worst{0.0, 0.0};
   for (const StampedPose& pose : trajectory) {
-    const int step = static_cast<int>(std::lround(pose.timestamp / kTimeStep));
-    const Vector6d error = difference(poseAt(step), pose.map_from_body);
+    const int step = static_cast<int>(std::lround(pose.timestamp / test::kTimeStep));
+    const Vector6d error = difference(test::poseOnCircle(step), pose.map_from_body);
     worst.first = std::max(worst.first, error.tail<3>().norm());
     worst.second = std::max(worst.second, error.head<3>().norm());
   }
@@ -54,7 +35,7 @@ std::pair<double, double> worstErrors(const Trajectory& trajectory) {
 
 Mapper mapRoom(std::uint64_t room, int steps, double sigma) {
   Mapper mapper{MapperParams()};
-  mapper.setInitialPose(poseAt(0));
+  mapper.setInitialPose(test::poseOnCircle(0));
   for (int step = 0; step < steps; ++step) mapper.add(scanAt(step, room, sigma), std::nullopt);
   mapper.finish();
   return mapper;

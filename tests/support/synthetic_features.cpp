@@ -147,15 +147,23 @@ mapping::ScanFeatures trueFeatures(const SyntheticScene& scene) {
 }
 
 mapping::ScanFeatures scanOfRoom(std::uint64_t room, int step,
-                                 const Eigen::Isometry3d& scene_from_body) {
+                                 const Eigen::Isometry3d& scene_from_body, double sigma) {
   SyntheticOptions options;
   options.spacing = 0.08;
-  options.sigma = 0.003;
+  options.sigma = sigma;
   options.seed = static_cast<std::uint64_t>(step);
   mapping::ScanFeatures scan = trueFeatures(sampleScene(
       furnishedRoom(room), scene_from_body.translation(), scene_from_body.inverse(), options));
   scan.timestamp = kTimeStep * step;
   return scan;
+}
+
+Eigen::Isometry3d poseOnCircle(int step) {
+  const double phase = 0.06 * step;
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+  pose.translation() = Eigen::Vector3d(0.5 * std::cos(phase) - 0.5, 0.5 * std::sin(phase), 1.2);
+  pose.linear() = Eigen::AngleAxisd(phase, Eigen::Vector3d::UnitZ()).toRotationMatrix();
+  return pose;
 }
 
 }  // namespace opp::test

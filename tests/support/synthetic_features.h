@@ -18,8 +18,11 @@ mapping::ScanFeatures trueFeatures(const SyntheticScene& scene);
 
 constexpr double kTimeStep = 0.1;  ///< of `scanOfRoom` [s]
 
-/// The `step`-th scan, with a noise of 3 mm, of a body in `furnishedRoom(room)`.
+/// The `step`-th scan of a body in `furnishedRoom(room)`; `sigma`: its noise [m].
 mapping::ScanFeatures scanOfRoom(std::uint64_t room, int step,
-                                 const Eigen::Isometry3d& scene_from_body);
+                                 const Eigen::Isometry3d& scene_from_body, double sigma = 0.003);
+
+/// A body that walks a circle and sees all around, at its `step`-th scan.
+Eigen::Isometry3d poseOnCircle(int step);
 
 }  // namespace opp::test

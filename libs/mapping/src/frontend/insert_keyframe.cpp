@@ -100,10 +100,8 @@ void addRelativePose(int id, const Matrix6d& point_information, MapState& map) {
   if (id == 0) return;
   const Eigen::Isometry3d& first = map.keyframes[static_cast<std::size_t>(id - 1)].map_from_body;
   const Eigen::Isometry3d& second = map.keyframes[static_cast<std::size_t>(id)].map_from_body;
-  const Matrix6d map_from_first = turned(first.linear());
   map.factors.relative_poses.push_back(
-      {id - 1, id, first.inverse() * second,
-       map_from_first.transpose() * point_information * map_from_first});
+      {id - 1, id, first.inverse() * second, informationIn(first.linear(), point_information)});
 }
 
 }  // namespace

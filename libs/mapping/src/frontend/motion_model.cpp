@@ -18,8 +18,6 @@ Vector6d perKind(double of_rotation, double of_translation) {
   return vector;
 }
 
-Matrix6d inverse(const Matrix6d& matrix) { return matrix.ldlt().solve(Matrix6d::Identity()); }
-
 /// Stamps that are equal or run backwards must not give infinite velocities.
 constexpr double kMinTimeStep = 1e-3;
 /// For so long an acceleration stays about the same [s].

@@ -20,13 +20,6 @@ constexpr std::size_t kEnoughScans = 4;
 /// So certain is a frame of itself [1/rad², 1/m²].
 constexpr double kExact = 1e12;
 
-/// a × b for each column b.
-Eigen::Matrix3d crossMatrix(const Eigen::Vector3d& a) {
-  Eigen::Matrix3d result;
-  result << 0.0, -a.z(), a.y(), a.z(), 0.0, -a.x(), -a.y(), a.x(), 0.0;
-  return result;
-}
-
 /// What linearization in `givenRate` leaves out, R·v ≈ v + ω × v, at one standard deviation of ω:
 /// at most (Σσ²/2)·|v|, added as a variance (second-order filter: Jazwinski 1970, "Stochastic
 /// Processes and Filtering Theory", 9.3).
@@ -84,8 +77,7 @@ PosePrior OpenPassage::smoothed(const FrontendParams& params) const {
     out.rate = (-out.rate).eval();
     both = givenRate(first_from_body_, out);
   }
-  const Matrix6d covariance = both.covariance.topLeftCorner<6, 6>();
-  return {both.map_from_body, covariance.ldlt().solve(Matrix6d::Identity())};
+  return {both.map_from_body, inverse(both.covariance.topLeftCorner<6, 6>())};
 }
 
 void OpenPassage::tighten(const FrontendParams& params, MapState& map) const {

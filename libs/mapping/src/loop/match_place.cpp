@@ -21,11 +21,10 @@ const Keyframe& keyframeOf(const MapState& map, int id) {
 
 PlaceMatch describe(const MapState& map, int keyframe, const MatchResult& match) {
   const Eigen::Isometry3d& map_from_keyframe = keyframeOf(map, keyframe).map_from_body;
-  const Matrix6d map_from_local = turned(map_from_keyframe.linear());
   PlaceMatch result;
   result.keyframe = keyframe;
   result.keyframe_from_body = normalized(map_from_keyframe.inverse() * match.map_from_body);
-  result.information = map_from_local.transpose() * match.point_information * map_from_local;
+  result.information = informationIn(map_from_keyframe.linear(), match.point_information);
   result.overlap = match.overlap;
   return result;
 }

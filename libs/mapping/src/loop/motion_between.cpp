@@ -45,7 +45,7 @@ std::optional<ExpectedBeginning> chained(const ExpectedBeginning& first,
   const Matrix6d turn = turned(last_from_last.linear());
   const Matrix6d covariance = moved * covarianceOf(first.information) * moved.transpose() +
                               turn * covarianceOf(second.information) * turn.transpose();
-  both.information = covariance.ldlt().solve(Matrix6d::Identity());
+  both.information = inverse(covariance);
   return both;
 }
 

@@ -98,9 +98,9 @@ std::optional<ExpectedBeginning> Mapper::expectedBeginning(
   if (!expected || map.scans.empty()) return std::nullopt;
   const LocalizedScan& last = map.scans.back();
   const Eigen::Isometry3d last_from_map = poseOf(map, last).inverse();
-  const Matrix6d map_from_last = turned(last_from_map.linear().transpose());
-  return ExpectedBeginning{last.id(), scan.id(), last_from_map * expected->map_from_body,
-                           map_from_last.transpose() * expected->information * map_from_last};
+  return ExpectedBeginning{
+      last.id(), scan.id(), last_from_map * expected->map_from_body,
+      informationIn(last_from_map.linear().transpose(), expected->information)};
 }
 
 void Mapper::addKeyframe(ScanFeatures scan, const MatchResult& match) {
@@ -130,19 +130,17 @@ void Mapper::follow(const ScanFeatures& scan, const Eigen::Isometry3d& map_from_
 void Mapper::openPassage(double timestamp, const TrackResult& track) {
   closePassage();
   const Eigen::Isometry3d first_from_map = active().keyframes.back().map_from_body.inverse();
-  const Matrix6d map_from_first = turned(first_from_map.linear().transpose());
   passage_.emplace(static_cast<int>(active().keyframes.size()), timestamp,
                    inFrame(first_from_map, track.predicted),
-                   map_from_first.transpose() * track.motion_information * map_from_first);
+                   informationIn(first_from_map.linear().transpose(), track.motion_information));
 }
 
 void Mapper::followPassage(double timestamp, const MatchResult& match) {
   if (!passage_) return;
   const Eigen::Isometry3d end_from_map =
       active().keyframes[static_cast<std::size_t>(passage_->keyframe())].map_from_body.inverse();
-  const Matrix6d map_from_end = turned(end_from_map.linear().transpose());
   passage_->follow({timestamp, end_from_map * match.map_from_body},
-                   map_from_end.transpose() * match.information * map_from_end);
+                   informationIn(end_from_map.linear().transpose(), match.information));
   if (passage_->isFollowed()) closePassage();
 }
 

@@ -30,11 +30,15 @@ Matrix6d withoutNoise(const Matrix6d& hessian, const Matrix6d& noise, double ran
   return units.cwiseInverse().asDiagonal() * positive * units.cwiseInverse().asDiagonal();
 }
 
+Eigen::Matrix3d crossMatrix(const Eigen::Vector3d& a) {
+  Eigen::Matrix3d result;
+  result << 0.0, -a.z(), a.y(), a.z(), 0.0, -a.x(), -a.y(), a.x(), 0.0;
+  return result;
+}
+
 Matrix6d movedBy(const Eigen::Vector3d& offset) {
   Matrix6d moved = Matrix6d::Identity();
-  moved.bottomLeftCorner<3, 3>() << 0.0, offset.z(), -offset.y(),  //
-      -offset.z(), 0.0, offset.x(),                                //
-      offset.y(), -offset.x(), 0.0;
+  moved.bottomLeftCorner<3, 3>() = crossMatrix(-offset);
   return moved;
 }
 
@@ -43,9 +47,11 @@ double largestVariance(const Eigen::Matrix3d& covariance) {
       .eigenvalues()[2];
 }
 
+Matrix6d inverse(const Matrix6d& matrix) { return matrix.ldlt().solve(Matrix6d::Identity()); }
+
 Matrix6d covarianceOf(const Matrix6d& information) {
   constexpr double kLeast = 1e-4;
-  return (information + kLeast * Matrix6d::Identity()).ldlt().solve(Matrix6d::Identity());
+  return inverse(information + kLeast * Matrix6d::Identity());
 }
 
 }  // namespace opp::mapping

@@ -59,11 +59,23 @@ inline Matrix6d turned(const Eigen::Matrix3d& to_from) {
   return result;
 }
 
+/// Information of (ω, v) in the axes of another frame.
+inline Matrix6d informationIn(const Eigen::Matrix3d& from_frame, const Matrix6d& information) {
+  const Matrix6d turn = turned(from_frame);
+  return turn.transpose() * information * turn;
+}
+
+/// crossMatrix(a) * b = a × b.
+Eigen::Matrix3d crossMatrix(const Eigen::Vector3d& a);
+
 /// (ω, v) of a body whose v is given at one point, with v at another that is `offset` away.
 Matrix6d movedBy(const Eigen::Vector3d& offset);
 
 /// Variance in the worst direction.
 double largestVariance(const Eigen::Matrix3d& covariance);
+
+/// Inverse of a covariance or of an information matrix that has full rank.
+Matrix6d inverse(const Matrix6d& matrix);
 
 /// Inverse of an information matrix; a direction without counts as known to 100 rad or 100 m.
 Matrix6d covarianceOf(const Matrix6d& information);

@@ -163,10 +163,11 @@ class Refiner {
 
   /// The samples of each plane, by their index in the cloud.
   std::vector<std::vector<int>> samplesInCloud() const {
-    std::vector<std::vector<int>> samples(fits_.size());
-    for (Index i = 0; i < labels_.size(); ++i) {
-      if (labels_[i] < 0) continue;
-      samples[static_cast<Index>(labels_[i])].push_back(static_cast<int>(blocks_.order()[i]));
+    std::vector<std::vector<int>> samples;
+    for (const std::vector<std::uint32_t>& members : membersOf(labels_, fits_.size())) {
+      samples.emplace_back();
+      for (const std::uint32_t i : members)
+        samples.back().push_back(static_cast<int>(blocks_.order()[i]));
     }
     return samples;
   }

@@ -25,8 +25,9 @@ namespace opp {
 /// empty. Edges are those of `graph`, and of planes that meet by its rule once refined, that the
 /// data support. Planes keep their order in `graph`. An empty cloud or graph gives no planes. Of
 /// `sensor` only the noise's correlation is used: how noisy points are, the cloud says. O(samples ×
-/// families) per pass; deterministic. \throws std::invalid_argument for parameters out of range,
-/// edges that name no node, or vectors of `cloud` of different lengths.
+/// families) per pass; deterministic.
+/// \throws std::invalid_argument for parameters out of range, edges that name no node, or vectors
+/// of `cloud` of different lengths.
 Primitives refinePlanes(const OrientedCloud& cloud, const PlaneGraph& graph,
                         const SensorModel& sensor, const RefinementParams& params);
 
