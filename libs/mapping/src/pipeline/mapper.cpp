@@ -8,6 +8,7 @@
 #include "opp/mapping/frontend/merge_landmarks.h"
 #include "opp/mapping/loop/close_loose_ties.h"
 #include "opp/mapping/loop/join_parts.h"
+#include "opp/mapping/loop/keyframe_graph.h"
 #include "opp/mapping/loop/level_ties.h"
 #include "opp/mapping/loop/match_place.h"
 #include "opp/mapping/loop/split_map.h"
@@ -62,9 +63,8 @@ FrameResult Mapper::add(ScanFeatures scan, const std::optional<Eigen::Isometry3d
     // new to go on from there: the map knows how loosely the two are tied, see `finish`.
     result.localized = result.is_keyframe =
         track.wants_keyframe && canFoundMap(scan.cloud_in_body, params_.loop.min_normal_spread);
-    if (result.is_keyframe) openPassage(scan.timestamp, track);
   }
-  if (result.is_keyframe) addKeyframe(std::move(scan), track.match);
+  if (result.is_keyframe) addTracked(std::move(scan), track);
   return result;
 }
 
@@ -127,12 +127,19 @@ void Mapper::follow(const ScanFeatures& scan, const Eigen::Isometry3d& map_from_
                        keyframe_from_map * map_from_body});
 }
 
-void Mapper::openPassage(double timestamp, const TrackResult& track) {
-  closePassage();
+void Mapper::addTracked(ScanFeatures scan, const TrackResult& track) {
+  const auto id = static_cast<int>(active().keyframes.size());
   const Eigen::Isometry3d first_from_map = active().keyframes.back().map_from_body.inverse();
-  passage_.emplace(static_cast<int>(active().keyframes.size()), timestamp,
-                   inFrame(first_from_map, track.predicted),
-                   informationIn(first_from_map.linear().transpose(), track.motion_information));
+  OpenPassage passage(id, scan.timestamp, inFrame(first_from_map, track.predicted),
+                      informationIn(first_from_map.linear().transpose(), track.motion_information));
+  addKeyframe(std::move(scan), track.match);
+  // Scans to come are registered against this keyframe alone: of how it lies to those before, they
+  // say how fast the body was.
+  if (viewVariance(track.match.covariance, active().keyframes.back()) <=
+      connectedVariance(active(), id, params_))
+    return;
+  closePassage();
+  passage_ = std::move(passage);
 }
 
 void Mapper::followPassage(double timestamp, const MatchResult& match) {

@@ -64,8 +64,8 @@ class Mapper {
   std::optional<ExpectedBeginning> expectedBeginning(
       const ScanFeatures& scan, const std::optional<Eigen::Isometry3d>& odom_from_body) const;
   void addKeyframe(ScanFeatures scan, const MatchResult& match);
-  /// The scan that is about to become a keyframe left its pose open.
-  void openPassage(double timestamp, const TrackResult& track);
+  /// The keyframe ends a passage if its scan left its pose open.
+  void addTracked(ScanFeatures scan, const TrackResult& track);
   void followPassage(double timestamp, const MatchResult& match);
   void closePassage();
   /// Keyframes that a map ties no worse than this stay in it, see `tiedSets` [m²].
