@@ -61,6 +61,10 @@ TEST_F(RunIdentityOf, NamesWhatDiffers) {
   EXPECT_EQ(after([&](Inputs& i) { i.rawlogs = {b}; }), "rawlog 1 is " + b + ", was " + a);
 }
 
+TEST_F(RunIdentityOf, DoesNotDependOnHowOftenCheckpointsAreStored) {
+  EXPECT_EQ(after([](Inputs& i) { i.params.checkpoint.interval = 1.0; }), "equal");
+}
+
 TEST_F(RunIdentityOf, SeesFilesThatChanged) {
   const fs::path a = folder_ / "a";
   EXPECT_THAT(after([&](Inputs&) {

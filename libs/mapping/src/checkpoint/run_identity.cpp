@@ -68,6 +68,8 @@ RunIdentity identityOf(const std::vector<std::filesystem::path>& rawlogs,
   addSelection(selection, identity);
   MapperParams shown = params;
   for (const Parameter& p : parametersOf(shown)) {
+    // How often to store what was done changes nothing of it.
+    if (p.section == CheckpointParams::kSection) continue;
     identity["[" + std::string(p.section) + "] " + std::string(p.field.name)] = valueText(p);
   }
   return identity;

@@ -18,7 +18,7 @@ namespace opp::mapping {
 using RunIdentity = std::map<std::string, std::string>;
 
 /// Version of the program, rawlogs and initial poses (path as given, size, time of the last
-/// change), selection and parameters.
+/// change), selection and parameters, but for those of checkpoints.
 /// \throws std::runtime_error if an input file does not exist.
 RunIdentity identityOf(const std::vector<std::filesystem::path>& rawlogs,
                        const std::optional<std::filesystem::path>& initial_poses,
