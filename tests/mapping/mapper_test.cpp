@@ -126,8 +126,9 @@ TEST(Mapper, WhatComesIntoViewPastABareWallLiesWhereTheWayBeforeAndAfterPutIt) {
     mapper.finish();
     ASSERT_EQ(mapper.map().scans.size(), 16U);
     const Eigen::Isometry3d last = poseOf(mapper.map(), mapper.map().scans.back());
-    // The speed before alone is 0.07 m off after 0.3 s of this acceleration.
-    EXPECT_LT((last.translation() - besideWall(15).translation()).norm(), 0.01) << seed;
+    // The speed before alone is 0.08 m off after 0.3 s of this acceleration; on the first 0.1 s, up
+    // to a keyframe that shows nothing but the wall, there is no other.
+    EXPECT_LT((last.translation() - besideWall(15).translation()).norm(), 0.02) << seed;
   }
 }
 

@@ -136,6 +136,34 @@ TEST(MotionModel, TellsWhatMotionKnowsSinceAKeyframe) {
               1e-9);
 }
 
+TEST(MotionModel, RelativeToTheLastPoseWhatWasOpenBeforeDoesNotCount) {
+  const FrontendParams params;
+  const double density = 0.1 * params.acceleration * params.acceleration;
+  for (std::uint64_t seed = 1; seed <= 50; ++seed) {
+    test::Random random(seed);
+    Vector6d rate;
+    rate << random.vector(0.3), random.vector(1.0);
+    MotionModel model(params);
+    model.start({0.0, Eigen::Isometry3d::Identity()}, std::nullopt);
+    for (int step = 1; step <= 20; ++step) {
+      const double time = 0.1 * step;
+      const Matrix6d seen = step <= 15 ? exact() : Matrix6d(Matrix6d::Zero());
+      model.update({time, moving(Eigen::Isometry3d::Identity(), rate, time)}, std::nullopt, seen);
+    }
+    MotionModel relative = model;
+    relative.beginAtLastPose();
+    const double later = random.uniform(0.05, 0.5);
+    const MotionState all = model.predictState(2.0 + later, std::nullopt);
+    const MotionState since = relative.predictState(2.0 + later, std::nullopt);
+    EXPECT_EQ(since.map_from_body.matrix(), all.map_from_body.matrix());
+    EXPECT_EQ(since.rate, all.rate);
+    const double of_rate = model.state().covariance(9, 9);
+    EXPECT_NEAR(since.covariance(3, 3),
+                of_rate * later * later + density * later * later * later / 3.0, 1e-9);
+    EXPECT_GT(all.covariance(3, 3), since.covariance(3, 3) + model.state().covariance(3, 3));
+  }
+}
+
 TEST(MotionModel, StampsThatDoNotAdvanceGiveFinitePredictions) {
   MotionModel model(FrontendParams{});
   model.start({5.0, Eigen::Isometry3d::Identity()}, std::nullopt);

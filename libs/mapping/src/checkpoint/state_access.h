@@ -27,6 +27,7 @@ struct StateAccess {
   template <typename Archive>
   static void serialize(Archive& archive, Tracker& tracker) {
     serialize(archive, tracker.motion_);
+    serialize(archive, tracker.since_keyframe_);
     archive(tracker.lost_, tracker.follows_, tracker.surprised_);
   }
 

@@ -163,6 +163,11 @@ Matrix6d MotionModel::informationSinceAnchor(
   return inverse(covariance);
 }
 
+void MotionModel::beginAtLastPose() {
+  last_.covariance.topRows<6>().setZero();
+  last_.covariance.leftCols<6>().setZero();
+}
+
 void MotionModel::setAnchor() {
   anchor_ = {timestamp_, last_odom_from_body_, last_.covariance.bottomRightCorner<6, 6>()};
 }

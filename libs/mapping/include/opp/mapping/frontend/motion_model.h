@@ -69,6 +69,9 @@ class MotionModel {
   /// Remembers the last known pose, which became a keyframe.
   void setAnchor();
 
+  /// From now on poses are relative to the last one, which so is exact.
+  void beginAtLastPose();
+
   /// The map has moved by an optimization and took the last pose to `last_pose`.
   void correct(const Eigen::Isometry3d& last_pose);
 
