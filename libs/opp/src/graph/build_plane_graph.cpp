@@ -5,6 +5,7 @@
 #include "opp/graph/union_find.h"
 
 #include "detection/gather_hypotheses.h"
+#include "graph/one_surface.h"
 #include "graph/plane_support.h"
 #include "graph/sample_assigner.h"
 
@@ -30,6 +31,7 @@ struct Cluster {
 struct Builder {
   const OrientedCloud& cloud;
   const OppHypotheses& hypotheses;
+  const SensorModel& sensor;
   const GraphParams& params;
   SampleAssigner assigner;
   UnionFind sets;
@@ -118,11 +120,11 @@ bool mergeable(const Builder& builder, const Cluster& a, const Cluster& b) {
   const auto fits = [&](const Cluster& part) {
     const double sigma = std::sqrt(part.samples / part.moments.weight());
     const double gate = builder.params.noise_gate * sigma + builder.params.flatness * part.spacing;
-    const double own = part.moments.squaredError(part.plane);
-    const double common = part.moments.squaredError(plane);
-    return common <= kOneSurface * own && common < part.moments.weight() * gate * gate / 3.0;
+    return part.moments.squaredError(plane) < part.moments.weight() * gate * gate / 3.0;
   };
-  return fits(a) && fits(b);
+  return fits(a) && fits(b) &&
+         isOneSurface(plane, {a.moments, a.plane}, {b.moments, b.plane},
+                      builder.sensor.noise_correlation);
 }
 
 /// Union of clusters that are one plane, strongest first.
@@ -225,7 +227,11 @@ PlaneGraph buildPlaneGraph(const OrientedCloud& cloud, const OppHypotheses& hypo
                            const SensorModel& sensor, const GraphParams& params) {
   validate(params);
   if (hypotheses.planes.empty()) return {};
-  Builder builder{cloud, hypotheses, params, SampleAssigner(cloud, sensor, params),
+  Builder builder{cloud,
+                  hypotheses,
+                  sensor,
+                  params,
+                  SampleAssigner(cloud, sensor, params),
                   UnionFind(hypotheses.planes.size())};
   gatherClusters(builder);
   for (int round = 0; round < params.rounds; ++round) {

@@ -11,11 +11,6 @@
 
 namespace opp {
 
-/// One surface that nearest-plane assignment cuts in two: each half of a Gaussian has a mean square
-/// of 0.36 σ² about its own plane and of 1 σ² about the common one, 2.8 times as much. Two surfaces
-/// that `splitLayers` tells apart have at least 6 times as much.
-inline constexpr double kOneSurface = 4.0;
-
 /// Largest connected patch of a plane's samples.
 struct SupportPatch {
   double samples = 0.0;

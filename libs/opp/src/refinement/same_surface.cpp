@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "refinement/same_surface.h"
 
-#include "graph/plane_support.h"
+#include "graph/one_surface.h"
 #include "refinement/plane_bookkeeping.h"
 
 #include <Eigen/Geometry>
@@ -123,19 +123,20 @@ bool SameSurface::operator()(std::size_t index_a, std::size_t index_b) const {
   joint.merge(b.moments);
   const Eigen::Vector3d normal = ownNormal(joint.scatter(), a.plane.normal());
   const Plane plane = Plane::fromPointNormal(joint.mean(), normal);
-  bool fits = true, bends = true;
+  bool bends = true;
   double step = 0.0;
   for (const PlaneFit* part : {&a, &b}) {
     const double own = part->moments.squaredError(part->plane);
     const double common = part->moments.squaredError(plane);
     const double range = (part->moments.mean() - viewpoint_).norm();
     const double bend = sensor_.distortion(range), sigmas = params_.test_sigmas;
-    fits = fits && common <= kOneSurface * own;
     bends = bends && common - own <= part->moments.weight() * std::pow(sigmas * bend, 2) &&
             turnsBy(*part, normal, sensor_.distortionSlope(range), sigmas);
     step = std::max(step, std::sqrt(std::max(0.0, common - own) / part->moments.weight()));
   }
-  if (fits) return true;
+  if (isOneSurface(plane, {a.moments, a.plane}, {b.moments, b.plane}, sensor_.noise_correlation)) {
+    return true;
+  }
   return bends && goesOn(index_a, index_b, normal, step);
 }
 
