@@ -3,6 +3,7 @@
 #include "opp/primitives/find_lines.h"
 
 #include "primitives/labelled_samples.h"
+#include "primitives/sample_pitch.h"
 
 #include <Eigen/Geometry>
 #include <Eigen/LU>
@@ -16,6 +17,7 @@ namespace {
 /// A sample beside a line.
 struct Beside {
   double along = 0.0;  ///< coordinate on the line [m]
+  double pitch = 0.0;  ///< of the samples along the line, here [m]
   bool front = false;  ///< on the viewpoint's side of the other plane
 };
 
@@ -37,24 +39,33 @@ Line intersect(const Plane& a, const Plane& b, const Eigen::Vector3d& near) {
   return {near + offset, direction};
 }
 
-/// Samples of one plane within `reach` of the line, by ascending coordinate.
-std::vector<Beside> besideLine(const std::vector<Eigen::Vector3d>& samples, const Plane& other,
-                               const Line& line, double reach) {
+/// A plane and its samples, as a line sees them.
+struct Side {
+  const Plane& plane;
+  const std::vector<Eigen::Vector3d>& samples;
+  double spacing;  ///< mean extent of the samples [m]
+};
+
+/// Samples of one side within `reach` spacings of the line, by ascending coordinate.
+std::vector<Beside> besideLine(const Side& side, const Plane& other, const Line& line, double reach,
+                               const Eigen::Vector3d& viewpoint) {
   std::vector<Beside> result;
-  for (const Eigen::Vector3d& x : samples) {
+  for (const Eigen::Vector3d& x : side.samples) {
     const double distance = other.signedDistance(x);
-    if (std::abs(distance) > reach) continue;
-    result.push_back({line.direction.dot(x - line.point), distance > 0.0});
+    if (std::abs(distance) > reach * side.spacing) continue;
+    const double pitch = pitchAlong(line.direction, side.plane.normal(), x - viewpoint);
+    result.push_back({line.direction.dot(x - line.point), pitch * side.spacing, distance > 0.0});
   }
   std::stable_sort(result.begin(), result.end(),
                    [](const Beside& a, const Beside& b) { return a.along < b.along; });
   return result;
 }
 
+/// Where the samples leave no gap of more than `max_gap` pitches.
 std::vector<Interval> stretches(const std::vector<Beside>& beside, double max_gap) {
   std::vector<Interval> result;
   for (const Beside& sample : beside) {
-    if (result.empty() || sample.along - result.back().high > max_gap) {
+    if (result.empty() || sample.along - result.back().high > max_gap * sample.pitch) {
       result.push_back({sample.along, sample.along});
     }
     result.back().high = sample.along;
@@ -98,6 +109,7 @@ class LineFinder {
   LineFinder(const OrientedCloud& cloud, const Primitives& scan, const LineParams& params)
       : scan_(scan),
         params_(params),
+        viewpoint_(cloud.viewpoint.cast<double>()),
         samples_(samplesByPlane(cloud, scan)),
         spacings_(spacingsOf(cloud, scan)) {}
 
@@ -107,12 +119,14 @@ class LineFinder {
     const PlanePrimitive &plane_a = scan_.planes.at(a), &plane_b = scan_.planes.at(b);
     const Eigen::Vector3d middle = 0.5 * (plane_a.moments.mean() + plane_b.moments.mean());
     const Line line = intersect(plane_a.plane, plane_b.plane, middle);
-    const auto beside_a =
-        besideLine(samples_[a], plane_b.plane, line, params_.reach * spacings_[a]);
-    const auto beside_b =
-        besideLine(samples_[b], plane_a.plane, line, params_.reach * spacings_[b]);
-    const auto on_a = stretches(beside_a, params_.max_gap * spacings_[a]);
-    const auto on_b = stretches(beside_b, params_.max_gap * spacings_[b]);
+    const auto beside = [&](std::size_t own, const PlanePrimitive& plane, const Plane& other) {
+      return besideLine({plane.plane, samples_[own], spacings_[own]}, other, line, params_.reach,
+                        viewpoint_);
+    };
+    const auto beside_a = beside(a, plane_a, plane_b.plane);
+    const auto beside_b = beside(b, plane_b, plane_a.plane);
+    const auto on_a = stretches(beside_a, params_.max_gap);
+    const auto on_b = stretches(beside_b, params_.max_gap);
     const double spacing = std::min(spacings_[a], spacings_[b]);
     for (Interval stretch : common(on_a, on_b)) {
       if (stretch.high - stretch.low < params_.min_length * spacing) continue;
@@ -147,6 +161,7 @@ class LineFinder {
 
   const Primitives& scan_;
   const LineParams& params_;
+  Eigen::Vector3d viewpoint_;
   std::vector<std::vector<Eigen::Vector3d>> samples_;
   std::vector<double> spacings_;  ///< of each plane's samples [m]
 };
