@@ -17,6 +17,10 @@
 namespace opp {
 namespace {
 
+/// Part of a sample's error that its neighbours may share before planes are refined: assignment is
+/// rough, and distortion bends surfaces. Refinement looks closer.
+constexpr double kAlike = 0.25;
+
 /// A plane under construction; stands for the hypotheses of one set.
 struct Cluster {
   Plane plane;
@@ -31,7 +35,6 @@ struct Cluster {
 struct Builder {
   const OrientedCloud& cloud;
   const OppHypotheses& hypotheses;
-  const SensorModel& sensor;
   const GraphParams& params;
   SampleAssigner assigner;
   UnionFind sets;
@@ -123,8 +126,7 @@ bool mergeable(const Builder& builder, const Cluster& a, const Cluster& b) {
     return part.moments.squaredError(plane) < part.moments.weight() * gate * gate / 3.0;
   };
   return fits(a) && fits(b) &&
-         isOneSurface(plane, {a.moments, a.plane}, {b.moments, b.plane},
-                      builder.sensor.noise_correlation);
+         isOneSurface(plane, {a.moments, a.plane}, {b.moments, b.plane}, kAlike);
 }
 
 /// Union of clusters that are one plane, strongest first.
@@ -227,11 +229,7 @@ PlaneGraph buildPlaneGraph(const OrientedCloud& cloud, const OppHypotheses& hypo
                            const SensorModel& sensor, const GraphParams& params) {
   validate(params);
   if (hypotheses.planes.empty()) return {};
-  Builder builder{cloud,
-                  hypotheses,
-                  sensor,
-                  params,
-                  SampleAssigner(cloud, sensor, params),
+  Builder builder{cloud, hypotheses, params, SampleAssigner(cloud, sensor, params),
                   UnionFind(hypotheses.planes.size())};
   gatherClusters(builder);
   for (int round = 0; round < params.rounds; ++round) {
