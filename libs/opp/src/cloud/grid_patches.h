@@ -17,6 +17,8 @@ struct GridPatches {
   Patches patches;
   int rows = 0;  ///< of blocks
   int cols = 0;
+  int block_rows = 1;  ///< of points in a block
+  int block_cols = 1;
   bool columns_wrap = false;
   std::vector<int> patch_of_block;  ///< [row * cols + col]; −1: no point in it
   std::vector<int> block_of_patch;

@@ -45,6 +45,7 @@ WindowFitter::WindowFitter(const Patches& patches, PatchWindows& windows,
       viewpoint_(viewpoint),
       sensor_(sensor),
       params_(params),
+      noise_(sensor, params, patches.pixel_angle),
       least_cosine_(std::cos(params.max_incidence)) {}
 
 void WindowFitter::fit(const std::vector<int>& patches, int radius, std::vector<WindowFit>& fits) {
@@ -122,13 +123,9 @@ void WindowFitter::judge(const WindowSums& window, int patch, int radius, const 
 }
 
 void WindowFitter::setVariances(WindowFit& window, double range, double cos_incidence) const {
-  const double sigma = sensor_.sigmaAlongNormal(range, cos_incidence);
-  window.model_variance = sigma * sigma;
-  // A ray that is off by an angle meets a slanted surface nearer or farther (modelled so by Handa
-  // et al., ICRA 2014).
-  const double lateral = params_.lateral_noise * patches_.pixel_angle * range;
-  window.expected_variance = window.model_variance +
-                             lateral * lateral * std::max(0.0, 1.0 - cos_incidence * cos_incidence);
+  const double squared_range = range * range, height = range * cos_incidence;
+  window.model_variance = noise_.model(squared_range, height);
+  window.expected_variance = noise_.expected(squared_range, height);
   const double least = params_.noise_floor * params_.noise_floor * window.model_variance +
                        roundingVariance(window.mean + patches_.origin);
   window.variance = std::max(least, scales_.between * window.expected_variance);

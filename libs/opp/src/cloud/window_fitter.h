@@ -7,6 +7,7 @@
 
 #include "cloud/noisy_plane.h"
 #include "cloud/patches.h"
+#include "cloud/point_noise.h"
 
 #include <array>
 #include <vector>
@@ -76,6 +77,7 @@ class WindowFitter {
   Eigen::Vector3d viewpoint_;
   SensorModel sensor_;
   SamplingParams params_;
+  PointNoise noise_;
   double least_cosine_;  ///< of the incidence angle
   NoiseScales scales_;
   std::vector<int> window_;  ///< scratch

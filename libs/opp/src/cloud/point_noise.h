@@ -1,0 +1,44 @@
+// SPDX-FileCopyrightText: 2026 The opp-mapping authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "opp/cloud/sampling_params.h"
+#include "opp/cloud/sensor_model.h"
+
+#include <algorithm>
+
+namespace opp {
+
+/// Variances along a surface's normal of a raw point measured on it [m²]: the point's squared
+/// range, and the viewpoint's distance from the surface's plane, which is the range times the
+/// cosine of the incidence angle, tell all without a root.
+class PointNoise {
+ public:
+  /// \param pixel_angle between neighbouring rays [rad]; 0: unknown.
+  /// \param scale of the expected variance, as a cloud shows it.
+  PointNoise(const SensorModel& sensor, const SamplingParams& params, double pixel_angle,
+             double scale = 1.0)
+      : constant_(sensor.noise_constant * sensor.noise_constant),
+        quadratic_(sensor.noise_quadratic * sensor.noise_quadratic),
+        lateral_(params.lateral_noise * params.lateral_noise * pixel_angle * pixel_angle),
+        scale_(scale) {}
+
+  /// What the sensor model says: `SensorModel::sigmaAlongNormal` squared.
+  double model(double squared_range, double height) const {
+    return constant_ + quadratic_ * squared_range * height * height;
+  }
+
+  /// With what a ray's direction is off by: it meets a slanted surface nearer or farther (modelled
+  /// so by Handa et al., ICRA 2014).
+  double expected(double squared_range, double height) const {
+    const double slanted = std::max(0.0, squared_range - height * height);
+    return scale_ * (model(squared_range, height) + lateral_ * slanted);
+  }
+
+ private:
+  double constant_, quadratic_;
+  double lateral_;  ///< variance of a ray's direction [rad²]
+  double scale_;
+};
+
+}  // namespace opp
