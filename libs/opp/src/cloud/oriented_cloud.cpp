@@ -5,7 +5,10 @@
 #include "opp/cloud/even_sampling.h"
 
 #include "cloud/grid_patches.h"
+#include "cloud/main_directions.h"
+#include "cloud/open_cells.h"
 #include "cloud/patch_normals.h"
+#include "cloud/strip_patches.h"
 #include "cloud/voxel_patches.h"
 #include "primitives/stopwatch.h"
 
@@ -69,23 +72,55 @@ OrientedCloud fromGivenNormals(const PointCloud& cloud, const SensorModel& senso
   return dense;
 }
 
-OrientedCloud fromPatches(const Patches& patches, PatchWindows& windows, const PointCloud& cloud,
-                          const SensorModel& sensor, const SamplingParams& params) {
+struct PatchSurface {
+  OrientedCloud dense;
+  std::vector<PatchNormal> normals;  ///< of all patches
+};
+
+PatchSurface fromPatches(const Patches& patches, PatchWindows& windows, const PointCloud& cloud,
+                         const SensorModel& sensor, const SamplingParams& params) {
   const Eigen::Vector3d viewpoint = cloud.viewpoint.cast<double>();
   PatchNormals estimator(patches, windows, viewpoint, sensor, params);
-  const std::vector<PatchNormal> normals = estimator.estimate();
-  OrientedCloud dense;
+  PatchSurface surface;
+  surface.normals = estimator.estimate();
+  OrientedCloud& dense = surface.dense;
   dense.noise_correlation = estimator.noiseCorrelation();
   reserve(dense, patches.size());
   dense.extents.reserve(patches.size());
   for (std::size_t i = 0; i < patches.size(); ++i) {
-    const Eigen::Vector3d& normal = normals[i].normal;
+    const Eigen::Vector3d& normal = surface.normals[i].normal;
     if (normal.isZero()) continue;
     const Eigen::Vector3d point = patches.origin + patches.means[i];
-    append(dense, point.cast<float>(), normal.cast<float>(), normals[i].sigma, patches.sums[i][0]);
-    dense.extents.push_back(static_cast<float>(patches.extentOf(i, normal, viewpoint - point)));
+    const double count = patches.sums[i][0];
+    append(dense, point.cast<float>(), normal.cast<float>(), surface.normals[i].sigma, count);
+    const double extent = patches.extentOf(count, normal, viewpoint - point);
+    dense.extents.push_back(static_cast<float>(extent));
   }
-  return dense;
+  return surface;
+}
+
+/// Appends what windows of patches are too wide for.
+void addStrips(const GridPatches& grid, const PointCloud& cloud, const SensorModel& sensor,
+               const SamplingParams& params, PatchSurface& surface) {
+  std::vector<Eigen::Vector3d> normals;
+  for (const PatchNormal& patch : surface.normals) {
+    if (!patch.normal.isZero()) normals.push_back(patch.normal);
+  }
+  const std::vector<Eigen::Vector3d> directions = mainDirections(normals);
+  const double pixel_angle = grid.patches.pixel_angle;
+  // The mean of a cell's points, whose errors are correlated, is less certain than if they were
+  // not.
+  const double points = std::max(1, grid.block_rows / 2) * std::max(1, grid.block_cols / 2);
+  const double correlation = std::max(0.0, surface.dense.noise_correlation);
+  const PointNoise noise(sensor, params, pixel_angle, 1.0 + (points - 1.0) * correlation);
+  const OpenCells cells = openCells(cloud, grid, surface.normals, directions, sensor, noise);
+  const Eigen::Vector3d viewpoint = cloud.viewpoint.cast<double>();
+  for (const StripPatch& strip : findStrips(cells, directions, params, noise, pixel_angle)) {
+    append(surface.dense, (viewpoint + strip.point).cast<float>(), strip.normal.cast<float>(),
+           strip.sigma, strip.count);
+    const double extent = grid.patches.extentOf(strip.count, strip.normal, -strip.point);
+    surface.dense.extents.push_back(static_cast<float>(extent));
+  }
 }
 
 OrientedCloud fromUnorganized(const PointCloud& cloud, const SensorModel& sensor,
@@ -98,7 +133,7 @@ OrientedCloud fromUnorganized(const PointCloud& cloud, const SensorModel& sensor
   const double edge = spacingForCount(points, patch_count, 0.0);
   if (edge <= 0.0) return {};  // all points are one
   const Patches patches = makeVoxelPatches(points, edge);
-  return fromPatches(patches, *nearestPatches(patches), cloud, sensor, params);
+  return fromPatches(patches, *nearestPatches(patches), cloud, sensor, params).dense;
 }
 
 OrientedCloud denseSurface(const PointCloud& cloud, const SensorModel& sensor,
@@ -109,7 +144,10 @@ OrientedCloud denseSurface(const PointCloud& cloud, const SensorModel& sensor,
   if (!cloud.organized()) return fromUnorganized(cloud, sensor, params, patch_count);
   const GridPatches grid = makeGridPatches(cloud, sensor, patch_count);
   GridWindows windows(grid, params.max_window_radius);
-  return fromPatches(grid.patches, windows, cloud, sensor, params);
+  PatchSurface surface = fromPatches(grid.patches, windows, cloud, sensor, params);
+  // The rings of a spinning lidar are too far apart.
+  if (!cloud.columns_wrap) addStrips(grid, cloud, sensor, params, surface);
+  return std::move(surface.dense);
 }
 
 /// The middle one of the points' noise levels: most samples need not be closer than it allows.

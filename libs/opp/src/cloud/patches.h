@@ -44,14 +44,14 @@ struct Patches {
     sums.reserve(count);
     means.reserve(count);
   }
-  /// Edge of the square of surface that a patch stands for [m].
-  double extentOf(std::size_t patch, const Eigen::Vector3d& normal,
+  /// Edge of the square of surface that a patch of so many points stands for [m].
+  double extentOf(double points, const Eigen::Vector3d& normal,
                   const Eigen::Vector3d& to_viewpoint) const {
     if (solid_angle == 0.0) return edge;
     // r² dω / cos: a pixel's part of a surface that is seen at an angle.
     const double range = to_viewpoint.norm();
     const double cosine_range = std::max(std::abs(normal.dot(to_viewpoint)), 0.1 * range);
-    return range * std::sqrt(sums[patch][0] * solid_angle * range / cosine_range);
+    return range * std::sqrt(points * solid_angle * range / cosine_range);
   }
   void add(const MomentSums& patch_sums) {
     sums.push_back(patch_sums);
