@@ -258,6 +258,24 @@ TEST(ComparePrimitives, LinesBeyondTheSeenStretchOfASeamAreNeutral) {
   EXPECT_EQ(tally(1.7, 2.0).precision(), 0.0);  // a fragment of what was seen
 }
 
+TEST(ComparePrimitives, CornersOfAThinBoardAreNotDuplicatesOfEachOther) {
+  // Its upper corner was asked for, the lower one was barely seen.
+  PlanarMapCorner upper, lower;
+  lower.position.z() = -0.02;
+  PlanarMap gt, est;
+  gt.corners = {upper};
+  gt.barely_seen.corners = {lower};
+  est.corners = {upper, lower};
+  PrimitiveTally tally = comparePrimitives(gt, est).corners;
+  EXPECT_EQ(tally.est_correct, 1U);
+  EXPECT_EQ(tally.est_neutral, 1U);
+  EXPECT_EQ(tally.precision(), 1.0);
+  est.corners[1].position.z() = -0.005;  // rather the upper one
+  tally = comparePrimitives(gt, est).corners;
+  EXPECT_EQ(tally.est_neutral, 0U);
+  EXPECT_EQ(tally.precision(), 0.5);
+}
+
 TEST(ComparePrimitives, RecallBySizeWeighsPlanesByPixelsAndLinesByMetres) {
   PlanarMap gt;
   gt.planes = {square(0, {0, 0, 0}, {0, 0, 1}, 1.0), square(1, {5, 0, 3}, {0, 0, 1}, 1.0)};

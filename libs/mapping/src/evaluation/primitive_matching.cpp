@@ -4,7 +4,21 @@
 
 #include "opp/mapping/evaluation/assignment.h"
 
+#include <algorithm>
+#include <limits>
+
 namespace opp::mapping {
+namespace {
+
+/// Of each estimated element's candidates; infinite if it has none.
+std::vector<double> leastCosts(std::size_t est_count,
+                               const std::vector<PrimitiveCandidate>& candidates) {
+  std::vector<double> costs(est_count, std::numeric_limits<double>::infinity());
+  for (const PrimitiveCandidate& c : candidates) costs[c.est] = std::min(costs[c.est], c.cost);
+  return costs;
+}
+
+}  // namespace
 
 PrimitiveMatching matchPrimitives(
     const std::vector<double>& gt_sizes, std::size_t est_count,
@@ -40,11 +54,11 @@ PrimitiveMatching matchPrimitives(
     tally.gt_size += gt_sizes[g];
     if (found[g]) tally.gt_size_found += gt_sizes[g];
   }
-  std::vector<bool> is_neutral(est_count, false);
-  for (const PrimitiveCandidate& c : barely_seen) is_neutral[c.est] = true;
-  // Also what is the same as an element that another one was matched to: a duplicate is wrong.
-  for (const PrimitiveCandidate& c : candidates) is_neutral[c.est] = false;
-  for (const bool neutral : is_neutral) tally.est_neutral += neutral;
+  // What is rather the same as a true element is wrong if that was found already: a duplicate.
+  const std::vector<double> as_true = leastCosts(est_count, candidates);
+  const std::vector<double> as_barely_seen = leastCosts(est_count, barely_seen);
+  for (std::size_t e = 0; e < est_count; ++e)
+    tally.est_neutral += matching.gt_of_est[e] < 0 && as_barely_seen[e] < as_true[e];
   return matching;
 }
 

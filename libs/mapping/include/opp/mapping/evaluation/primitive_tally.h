@@ -16,7 +16,8 @@ struct PrimitiveTally {
   std::size_t est = 0;          ///< estimated elements
   std::size_t gt_found = 0;     ///< true elements that were found
   std::size_t est_correct = 0;  ///< estimated elements that are a true one
-  /// Estimated elements that are a true one which was barely seen: neither right nor wrong.
+  /// Estimated elements that are rather a true one which was barely seen than any that was seen
+  /// well: neither right nor wrong.
   std::size_t est_neutral = 0;
   double gt_size = 0.0;        ///< of all true elements: pixels of planes, metres of lines
   double gt_size_found = 0.0;  ///< of those that were found
