@@ -176,14 +176,16 @@ bool Tracker::surprises(const PosePrior& predicted, const ScanFeatures& scan,
              params_.frontend.surprising_conflict;
 }
 
-/// Little structure beside a bare wall can lead registration off along the wall. What motion calls
-/// impossible must explain most of the scan, and no worse than what motion says.
+/// Little structure beside a bare wall can lead registration off along the wall, and a body that
+/// was carried off may come to a place that looks much the same. What motion calls impossible must
+/// leave next to nothing of the scan unexplained, and do no worse than what motion says.
 bool Tracker::slidAway(const MatchResult& match, const PosePrior& predicted,
                        const ScanFeatures& scan, const Keyframe& newest) const {
   if (predicted.squaredSigmas(match.map_from_body) <= kPossible) return false;
-  return !convincing(match) || clarity(verified(match.map_from_body, scan, newest, params_),
-                                       verified(predicted.map_from_body, scan, newest, params_)) <
-                                   -params_.global_alignment.min_slide_clarity;
+  return match.overlap < params_.frontend.keyframe_overlap ||
+         clarity(verified(match.map_from_body, scan, newest, params_),
+                 verified(predicted.map_from_body, scan, newest, params_)) <
+             -params_.global_alignment.min_slide_clarity;
 }
 
 /// The body may have been carried off: that one scan resembles the map at another pose is no proof,

@@ -66,8 +66,10 @@ struct FrontendParams {
     f(p.max_gap, Field{"max_gap", "s", 1e-3, 1e3,
                        "a body is not looked for in the same map once its place is predicted worse "
                        "(standard deviation) than the typical speed takes it in this time"});
-    f(p.keyframe_overlap, Field{"keyframe_overlap", "", 0.0, 1.0,
-                                "a scan of which a smaller share agrees becomes a keyframe"});
+    f(p.keyframe_overlap,
+      Field{"keyframe_overlap", "", 0.0, 1.0,
+            "a scan of which a smaller share agrees becomes a keyframe, and is lost "
+            "if motion says that the body cannot be there"});
     f(p.keyframe_rotation, Field{"keyframe_rotation", "rad", 0.01, 3.1415,
                                  "and one that looks so much away from the last keyframe"});
     f(p.local_keyframes, Field{"local_keyframes", "", 1, 1000, "keyframes in the local map"});
