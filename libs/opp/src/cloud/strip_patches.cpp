@@ -101,6 +101,7 @@ class StripFinder {
         best = std::move(region);
         direction = k;
       }
+      if (best.cells.empty()) continue;
       for (const int index : best.cells) claimed_[static_cast<std::size_t>(index)] = 1;
       cutIntoPatches(best, directions_[direction]);
     }
