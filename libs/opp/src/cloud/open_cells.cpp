@@ -45,8 +45,8 @@ class OpenCellGatherer {
         least_(static_cast<float>(sensor.min_range * sensor.min_range)),
         most_(static_cast<float>(sensor.max_range * sensor.max_range)),
         noise_(noise),
-        cell_rows_(std::max(1, grid.block_rows / 2)),
-        cell_cols_(std::max(1, grid.block_cols / 2)),
+        cell_rows_(grid.cellRows()),
+        cell_cols_(grid.cellCols()),
         surface_of_patch_(normals.size(), -1) {
     result_.rows = (cloud.rows + cell_rows_ - 1) / cell_rows_;
     result_.cols = (cloud.cols + cell_cols_ - 1) / cell_cols_;

@@ -77,6 +77,14 @@ struct PatchSurface {
   std::vector<PatchNormal> normals;  ///< of all patches
 };
 
+/// Appends the part of a surface that `count` raw points around `point` show.
+void appendPatch(const Patches& patches, const Eigen::Vector3d& viewpoint,
+                 const Eigen::Vector3d& point, const Eigen::Vector3d& normal, double sigma,
+                 double count, OrientedCloud& dense) {
+  append(dense, point.cast<float>(), normal.cast<float>(), sigma, count);
+  dense.extents.push_back(static_cast<float>(patches.extentOf(count, normal, viewpoint - point)));
+}
+
 PatchSurface fromPatches(const Patches& patches, PatchWindows& windows, const PointCloud& cloud,
                          const SensorModel& sensor, const SamplingParams& params) {
   const Eigen::Vector3d viewpoint = cloud.viewpoint.cast<double>();
@@ -91,10 +99,8 @@ PatchSurface fromPatches(const Patches& patches, PatchWindows& windows, const Po
     const Eigen::Vector3d& normal = surface.normals[i].normal;
     if (normal.isZero()) continue;
     const Eigen::Vector3d point = patches.origin + patches.means[i];
-    const double count = patches.sums[i][0];
-    append(dense, point.cast<float>(), normal.cast<float>(), surface.normals[i].sigma, count);
-    const double extent = patches.extentOf(count, normal, viewpoint - point);
-    dense.extents.push_back(static_cast<float>(extent));
+    appendPatch(patches, viewpoint, point, normal, surface.normals[i].sigma, patches.sums[i][0],
+                dense);
   }
   return surface;
 }
@@ -110,16 +116,14 @@ void addStrips(const GridPatches& grid, const PointCloud& cloud, const SensorMod
   const double pixel_angle = grid.patches.pixel_angle;
   // The mean of a cell's points, whose errors are correlated, is less certain than if they were
   // not.
-  const double points = std::max(1, grid.block_rows / 2) * std::max(1, grid.block_cols / 2);
+  const double points = grid.cellRows() * grid.cellCols();
   const double correlation = std::max(0.0, surface.dense.noise_correlation);
   const PointNoise noise(sensor, params, pixel_angle, 1.0 + (points - 1.0) * correlation);
   const OpenCells cells = openCells(cloud, grid, surface.normals, directions, sensor, noise);
   const Eigen::Vector3d viewpoint = cloud.viewpoint.cast<double>();
   for (const StripPatch& strip : findStrips(cells, directions, params, noise, pixel_angle)) {
-    append(surface.dense, (viewpoint + strip.point).cast<float>(), strip.normal.cast<float>(),
-           strip.sigma, strip.count);
-    const double extent = grid.patches.extentOf(strip.count, strip.normal, -strip.point);
-    surface.dense.extents.push_back(static_cast<float>(extent));
+    appendPatch(grid.patches, viewpoint, viewpoint + strip.point, strip.normal, strip.sigma,
+                strip.count, surface.dense);
   }
 }
 

@@ -123,6 +123,9 @@ bool SameSurface::operator()(std::size_t index_a, std::size_t index_b) const {
   joint.merge(b.moments);
   const Eigen::Vector3d normal = ownNormal(joint.scatter(), a.plane.normal());
   const Plane plane = Plane::fromPointNormal(joint.mean(), normal);
+  if (isOneSurface(plane, {a.moments, a.plane}, {b.moments, b.plane}, sensor_.noise_correlation)) {
+    return true;
+  }
   bool bends = true;
   double step = 0.0;
   for (const PlaneFit* part : {&a, &b}) {
@@ -133,9 +136,6 @@ bool SameSurface::operator()(std::size_t index_a, std::size_t index_b) const {
     bends = bends && common - own <= part->moments.weight() * std::pow(sigmas * bend, 2) &&
             turnsBy(*part, normal, sensor_.distortionSlope(range), sigmas);
     step = std::max(step, std::sqrt(std::max(0.0, common - own) / part->moments.weight()));
-  }
-  if (isOneSurface(plane, {a.moments, a.plane}, {b.moments, b.plane}, sensor_.noise_correlation)) {
-    return true;
   }
   return bends && goesOn(index_a, index_b, normal, step);
 }
