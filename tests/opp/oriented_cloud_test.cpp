@@ -92,6 +92,8 @@ TEST(ScanSurface, OpenSamplesAreSplitIntoTheirPatches) {
       points -= static_cast<double>(surface.samples.weights[i]);
       ASSERT_GT(surface.samples.extent(i), 0.0);
       ASSERT_LE(surface.samples.extent(i), surface.samples.spacing * 1.000001);
+      ASSERT_GT(surface.samples.patchExtent(i), 0.0);
+      ASSERT_LE(surface.samples.patchExtent(i), surface.samples.extent(i) * 1.000001);
     }
     EXPECT_EQ(points, 0.0) << "every raw point stays in one sample; sums of whole numbers";
   }

@@ -14,6 +14,7 @@ namespace opp {
 namespace {
 
 constexpr double kExtent = 0.05;
+constexpr double kArea = kExtent * kExtent;
 constexpr double kSigma = 0.0025;
 
 /// Two planes about x = 3.4 m, seen from the origin, and their samples.
@@ -29,7 +30,7 @@ class TwoPieces {
         const double y = left + (static_cast<double>(column) + 0.5) * kExtent;
         const double z = low + (static_cast<double>(row) + 0.5) * kExtent;
         samples_.push_back(
-            {{x(y, z), y, z}, -Eigen::Vector3d::UnitX(), kSigma * kSigma, kExtent * kExtent});
+            {{x(y, z), y, z}, -Eigen::Vector3d::UnitX(), kSigma * kSigma, kArea, kArea});
         labels_.push_back(label);
       }
     }

@@ -47,8 +47,10 @@ void load(Archive& archive, PointMoments& moments) {
 
 template <typename Archive>
 void serialize(Archive& archive, OrientedCloud& value) {
-  auto& [points, normals, sigmas, weights, extents, viewpoint, spacing, noise_correlation] = value;
-  archive(points, normals, sigmas, weights, extents, viewpoint, spacing, noise_correlation);
+  auto& [points, normals, sigmas, weights, extents, patch_extents, viewpoint, spacing,
+         noise_correlation] = value;
+  archive(points, normals, sigmas, weights, extents, patch_extents, viewpoint, spacing,
+          noise_correlation);
 }
 
 template <typename Archive>

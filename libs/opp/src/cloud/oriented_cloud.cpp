@@ -162,6 +162,19 @@ double medianSigma(std::vector<float> sigmas) {
   return static_cast<double>(*middle);
 }
 
+/// Mean extent of each sample's patches [m].
+std::vector<float> meanPatchExtents(const OrientedCloud& patches,
+                                    const std::vector<int>& sample_of_patch, std::size_t samples) {
+  std::vector<float> means(samples), counts(samples);
+  for (std::size_t i = 0; i < patches.size(); ++i) {
+    const auto sample = static_cast<std::size_t>(sample_of_patch[i]);
+    means[sample] += patches.extents[i];
+    counts[sample] += 1.0F;
+  }
+  for (std::size_t k = 0; k < samples; ++k) means[k] /= counts[k];
+  return means;
+}
+
 ScanSurface thinned(OrientedCloud dense, const SamplingParams& params) {
   // Samples at least d apart, drawn one by one, end at 0.547·4/π = 0.70 per d² (jamming limit of
   // discs, Feder 1980); cells of edge h number one per h² of surface.
@@ -178,7 +191,10 @@ ScanSurface thinned(OrientedCloud dense, const SamplingParams& params) {
   }
   surface.samples = sampleEvenly(dense, spacing, params, &surface.sample_of_patch);
   surface.samples.noise_correlation = dense.noise_correlation;
-  if (!dense.extents.empty()) surface.patches = std::move(dense);
+  if (dense.extents.empty()) return surface;
+  surface.samples.patch_extents =
+      meanPatchExtents(dense, surface.sample_of_patch, surface.samples.size());
+  surface.patches = std::move(dense);
   return surface;
 }
 
@@ -190,6 +206,7 @@ void appendSome(const OrientedCloud& from, const Wanted& wanted, OrientedCloud& 
     append(to, from.points[i], from.normals[i], static_cast<double>(from.sigmas[i]),
            static_cast<double>(from.weights[i]));
     to.extents.push_back(static_cast<float>(std::min(from.extent(i), to.spacing)));
+    to.patch_extents.push_back(static_cast<float>(std::min(from.patchExtent(i), to.spacing)));
   }
 }
 

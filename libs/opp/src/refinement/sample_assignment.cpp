@@ -16,6 +16,8 @@ namespace {
 /// Misfit of a plane counts if noise alone would not produce it in 19 of 20 planes.
 constexpr double kChanceSigmas = 2.0;
 
+/// Patches at the rim turn the fit of a strip by this times (extent/width)²: see information().
+constexpr double kRimTurn = 0.75;
 /// A sample this near to a plane needs no other explanation.
 constexpr double kExplainedSigmas = 2.0;
 /// (1e-9 m)²: below any sensor's noise, and no division by zero at the origin.
@@ -35,6 +37,7 @@ std::vector<WeightedSample> weightedSamples(const OrientedCloud& cloud, const Se
     const double count = std::max(1.0, static_cast<double>(cloud.weights[i]));
     const double sigma = shown.meanSigma(static_cast<double>(cloud.sigmas[i]), count);
     sample.area = cloud.extent(i) * cloud.extent(i);
+    sample.patch_area = cloud.patchExtent(i) * cloud.patchExtent(i);
     sample.variance = kLeastVariance + rounding * rounding + sigma * sigma;
   }
   return samples;
@@ -70,6 +73,7 @@ void SampleSums::merge(const SampleSums& other) {
   variance_sum += other.variance_sum;
   support += other.support;
   area += other.area;
+  patch_area += other.patch_area;
 }
 
 double SampleSums::excess(double outlier_cutoff) const {
@@ -90,12 +94,13 @@ Eigen::Matrix3d PlaneFit::information(const Eigen::Vector3d& normal) const {
   const Eigen::Matrix<double, 3, 2> tangents = tangentBasis(normal);
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes(tangents.transpose() *
                                                             moments.scatter() * tangents);
-  const double squared_extent = sums.area / sums.support;
+  const double squared_extent = sums.patch_area / sums.support;
   Eigen::Vector2d known;
   for (int k = 0; k < 2; ++k) {
     const double points = std::max(0.0, axes.eigenvalues()[k]);
     // w² = 12 variances.
-    const double rim = points > 0.0 ? squared_extent * moments.weight() / (16.0 * points) : 1.0;
+    const double variance = points / moments.weight();
+    const double rim = points > 0.0 ? kRimTurn * squared_extent / (12.0 * variance) : 1.0;
     known[k] = points / (1.0 + points * rim * rim);
   }
   const Eigen::Matrix<double, 3, 2> directions = tangents * axes.eigenvectors();

@@ -18,8 +18,9 @@ namespace opp {
 struct WeightedSample {
   Eigen::Vector3d point;
   Eigen::Vector3d normal;
-  double variance;  ///< of its offset: of n raw points whose errors are correlated [m²]
-  double area;      ///< [m²] of the surface that it stands for
+  double variance;    ///< of its offset: of n raw points whose errors are correlated [m²]
+  double area;        ///< [m²] of the surface that it stands for
+  double patch_area;  ///< [m²] of one of the patches that it is the mean of
 };
 
 std::vector<WeightedSample> weightedSamples(const OrientedCloud& cloud, const SensorModel& sensor);
@@ -38,6 +39,7 @@ struct SampleSums {
   double square_sum = 0.0;                           ///< Σ ω r² [m²]
   double variance_sum = 0.0;                         ///< Σ ω × variance of the sample [m²]
   double area = 0.0;                                 ///< of all samples [m²]
+  double patch_area = 0.0;                           ///< Σ of the samples' patch_area [m²]
   int support = 0;                                   ///< samples
 
   PointMoments moments() const;
@@ -63,6 +65,7 @@ struct SampleSums {
     square_sum += robust * square;
     variance_sum += robust * sample.variance;
     area += sample.area;
+    patch_area += sample.patch_area;
     ++support;
     return true;
   }
@@ -84,7 +87,7 @@ struct PlaneFit {
   bool uncertain = false;     ///< its direction is not known
   Eigen::AlignedBox3d reach;  ///< where its samples can be
 
-  /// What the samples say about the normal, as a scatter matrix [1/rad²] about `normal`. Samples at
+  /// What the samples say about the normal, as a scatter matrix [1/rad²] about `normal`. Patches at
   /// the rim of a surface are averages that take in some of its neighbour: at a right angle they
   /// are an eighth of their extent off. Those along one side of a strip of width w turn its fit by
   /// 0.75 (extent/w)² rad, which counts as a standard deviation.

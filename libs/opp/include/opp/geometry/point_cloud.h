@@ -38,6 +38,8 @@ struct OrientedCloud {
   std::vector<float> weights;  ///< number of raw points this sample stands for, ≥ 1
   std::vector<float> extents;  ///< [m] edge of the square of surface that a sample stands for, at
                                ///< most `spacing`; empty: `spacing` for all
+  std::vector<float> patch_extents;  ///< [m] the same of the patches that were averaged to a
+                                     ///< sample; empty: of each sample its own
   Eigen::Vector3f viewpoint =
       Eigen::Vector3f::Zero();  ///< the sensor's origin, in the points' frame [m]
   double spacing = 0.0;         ///< d_min of the sampling [m]
@@ -47,6 +49,9 @@ struct OrientedCloud {
   std::size_t size() const { return points.size(); }
   double extent(std::size_t i) const {
     return extents.empty() ? spacing : static_cast<double>(extents[i]);
+  }
+  double patchExtent(std::size_t i) const {
+    return patch_extents.empty() ? extent(i) : static_cast<double>(patch_extents[i]);
   }
 };
 
