@@ -265,6 +265,24 @@ TEST(RefinePlanes, DropsStripsOfCylinders) {
   EXPECT_TRUE(refinePlanes(cloud, rough, SensorModel(), RefinementParams()).planes.empty());
 }
 
+TEST(RefinePlanes, KeepsAStripThatTurnsOutToBeParallelToAWall) {
+  // Three samples wide, its direction is known to some 5° only: by itself it would be dropped.
+  Rectangles scene_parts = room();
+  scene_parts.push_back({{2.2, 0.0, 0.0}, {0.0, 0.0, 1.0}, {0.0, 0.06, 0.0}});
+  int kept = 0;
+  for (std::uint64_t seed = 0; seed < 20; ++seed) {
+    test::Random random(seed);
+    const SyntheticScene scene = sampled(scene_parts, 0.004, random, 0.04);
+    const Primitives result =
+        refinePlanes(scene.cloud, test::roughGraph(scene, degToRad(6.0), 0.0, random),
+                     SensorModel(), RefinementParams());
+    for (const PlanePrimitive& plane : result.planes) {
+      if (plane.support < 400 && angleBetween(plane.plane, scene.planes[1]) < degToRad(0.5)) ++kept;
+    }
+  }
+  EXPECT_EQ(kept, 20);
+}
+
 TEST(RefinePlanes, DropsPlanesWithoutSamplesAndRenumbersEdges) {
   test::Random random(8);
   const SyntheticScene scene = sampled(room(), 0.0, random);

@@ -133,10 +133,20 @@ class Refiner {
     }
   }
 
+  /// Marks planes whose direction is not known, by the families that they fit into as they are now:
+  /// they have moved since those in use were found.
+  void markUncertainNow() {
+    const PlaneStructure present = findStructure(normalEstimates(fits_), edges_, params_);
+    markUncertain(present, normalsOf(present).normals, params_, fits_);
+  }
+
+  NormalSolution normalsOf(const PlaneStructure& structure) const {
+    return solveNormals(normalProblem(structure, fits_, params_), familyNormals(structure, fits_));
+  }
+
   /// Solves the normals from the moments and moves the planes; true if they hardly moved.
   bool solve() {
-    solution_ =
-        solveNormals(normalProblem(structure_, fits_, params_), familyNormals(structure_, fits_));
+    solution_ = normalsOf(structure_);
     bool rest = solution_.converged;
     for (Index f = 0; f < structure_.families.size(); ++f) {
       for (const int plane : structure_.families[f]) {
@@ -150,7 +160,7 @@ class Refiner {
   bool restructure() {
     const std::size_t before = fits_.size();
     markCurved(samples_, labels_, params_, fits_);
-    markUncertain(structure_, solution_.normals, params_, fits_);
+    markUncertainNow();
     dropAndMerge();
     const bool split = splitPlanes(samples_, labels_, params_, fits_, edges_);
     PlaneStructure tested = findStructure(normalEstimates(fits_), edges_, params_);
