@@ -2,7 +2,30 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "opp/mapping/registration/plane_samples.h"
 
+#include <Eigen/Eigenvalues>
+
+#include <cmath>
+#include <limits>
+
 namespace opp::mapping {
+namespace {
+
+/// Patches at the rim of a surface take in some of its neighbour: a share 1 − u ≤ 1/2, which at a
+/// right angle puts them (1 − u)²/2 of their extent off, this much (root mean square).
+constexpr double kRimShift = 0.056;
+
+/// Variance of a plane's offset that patches at its rims cause [m²]: on a strip of width w the
+/// share extent/w of the samples lies along either.
+double rimVariance(const PointMoments& moments, double patch_area) {
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(moments.scatter(),
+                                                            Eigen::EigenvaluesOnly);
+  // A rectangle of width w has variance w²/12.
+  const double squared_width = 12.0 * axes.eigenvalues()[1] / moments.weight();
+  if (!(squared_width > 0.0)) return std::numeric_limits<double>::infinity();
+  return std::pow(2.0 * kRimShift * patch_area, 2) / squared_width;
+}
+
+}  // namespace
 
 float sampleVariance(const OrientedCloud& cloud, std::size_t sample, const SensorModel& sensor) {
   const double sigma = sensor.withCorrelation(cloud.noise_correlation)
@@ -17,6 +40,7 @@ double effectiveCount(double count, const SensorModel& sensor) {
 
 std::vector<PlaneSamples> planeSamples(const ScanFeatures& scan, const SensorModel& sensor) {
   std::vector<PlaneSamples> planes(scan.primitives_in_body.planes.size());
+  std::vector<double> patch_areas(planes.size());
   const OrientedCloud& cloud = scan.cloud_in_body;
   for (std::size_t i = 0; i < cloud.size(); ++i) {
     const int label = scan.primitives_in_body.labels[i];
@@ -25,13 +49,18 @@ std::vector<PlaneSamples> planeSamples(const ScanFeatures& scan, const SensorMod
     plane.moments_in_body.add(cloud.points[i].cast<double>(),
                               1.0 / sampleVariance(cloud, i, sensor));
     plane.effective_count += 1.0;
+    patch_areas[static_cast<std::size_t>(label)] += cloud.patchExtent(i) * cloud.patchExtent(i);
   }
-  for (PlaneSamples& plane : planes) {
-    const double effective_count = effectiveCount(plane.effective_count, sensor);
-    if (plane.effective_count > 0.0) {
-      plane.moments_in_body.scaleWeights(effective_count / plane.effective_count);
-    }
-    plane.effective_count = effective_count;
+  for (std::size_t k = 0; k < planes.size(); ++k) {
+    PlaneSamples& plane = planes[k];
+    const double count = plane.effective_count;
+    if (count == 0.0) continue;
+    plane.effective_count = effectiveCount(count, sensor);
+    plane.moments_in_body.scaleWeights(plane.effective_count / count);
+    const double rim = rimVariance(plane.moments_in_body, patch_areas[k] / count);
+    const double share = 1.0 / (1.0 + plane.moments_in_body.weight() * rim);
+    plane.moments_in_body.scaleWeights(share);
+    plane.effective_count *= share;
   }
   return planes;
 }
