@@ -105,6 +105,19 @@ TEST(UnifyPlanes, ALayerSeenBesideItsWallStaysALayer) {
   EXPECT_EQ(unifyPlanes(map, distortedSensor(), BackendParams()), 0);
 }
 
+TEST(UnifyPlanes, AMapThatShowsNoDistortionExcusesNothing) {
+  for (std::uint64_t seed = 0; seed < 20; ++seed) {
+    test::Random random(seed);
+    MapState map;
+    addDistortedView(0.0, 0.0, 0.0, map, random);
+    addDistortedView(0.9, 0.0, 0.06, map, random);  // a step of six standard deviations
+    // A floor that five keyframes saw, each where the others did.
+    for (int k = 0; k < 5; ++k) addPatch(20.0, 0.0, map, random);
+    for (std::size_t k = 2; k < 7; ++k) map.factors.planes[k].landmark = 2;
+    EXPECT_EQ(unifyPlanes(map, distortedSensor(), BackendParams()), 0) << "seed " << seed;
+  }
+}
+
 TEST(UnifyPlanes, ASensorWithoutDistortionExcusesNothing) {
   test::Random random(4);
   MapState map;
@@ -148,6 +161,20 @@ TEST(MergeLandmarks, TheTwoSidesOfABoardStayTwo) {
   addPatch(0.0, 0.005, map, random);
   map.landmarks.planes[1].plane_in_map = map.landmarks.planes[1].plane_in_map.flipped();
   EXPECT_EQ(mergeLandmarks(map, kGate), 0);
+}
+
+TEST(MergeLandmarks, WhatAKeyframeToldApartStaysTwo) {
+  test::Random random(6);
+  MapState map;
+  addPatch(0.0, 0.0, map, random);
+  addPatch(0.9, 0.005, map, random);
+  MapState seen_together = map;
+  seen_together.factors.planes[1].keyframe = 0;
+  seen_together.factors.planes[1].moments_in_body =
+      transformed(map.keyframes[0].map_from_body.inverse() * map.keyframes[1].map_from_body,
+                  map.factors.planes[1].moments_in_body);
+  EXPECT_EQ(mergeLandmarks(seen_together, kGate), 0);
+  EXPECT_EQ(mergeLandmarks(map, kGate), 1) << "the same of two keyframes";
 }
 
 TEST(MergeLandmarks, RightAnglesAndCornersFollow) {

@@ -36,16 +36,19 @@ void LandmarkSupport::merge(const LandmarkSupport& other) {
   keyframes.insert(other.keyframes.begin(), other.keyframes.end());
 }
 
+LandmarkSupport supportOf(const PlaneFactor& factor, const MapState& map) {
+  const Keyframe& keyframe = map.keyframes[Index(factor.keyframe)];
+  return {transformed(keyframe.map_from_body, factor.moments_in_body),
+          factor.effective_samples,
+          factor.moments_in_body.mean().norm(),
+          {factor.keyframe}};
+}
+
 std::vector<LandmarkSupport> supportsOf(const MapState& map) {
   std::vector<LandmarkSupport> supports(map.landmarks.planes.size());
   for (const PlaneFactor& factor : map.factors.planes) {
-    if (factor.moments_in_body.empty()) continue;
-    const Keyframe& keyframe = map.keyframes[Index(factor.keyframe)];
-    supports[Index(factor.landmark)].merge(
-        {transformed(keyframe.map_from_body, factor.moments_in_body),
-         factor.effective_samples,
-         factor.moments_in_body.mean().norm(),
-         {factor.keyframe}});
+    if (!factor.moments_in_body.empty())
+      supports[Index(factor.landmark)].merge(supportOf(factor, map));
   }
   return supports;
 }
@@ -63,6 +66,14 @@ bool touch(const LandmarkSupport& a, const LandmarkSupport& b) {
 
 bool fits(const LandmarkSupport& part, const Plane& common, double gate_sigmas) {
   return part.moments.squaredError(common) <= gate_sigmas * gate_sigmas * part.effective_samples;
+}
+
+bool explains(const Plane& plane, const LandmarkSupport& part, const SensorModel& sensor,
+              double gate_sigmas) {
+  const double distortion = sensor.distortion(part.mean_range);
+  return part.moments.squaredError(plane) <=
+         gate_sigmas * gate_sigmas *
+             (part.effective_samples + distortion * distortion * part.moments.weight());
 }
 
 bool fitsDistorted(const LandmarkSupport& part, const Plane& own, const Plane& common,

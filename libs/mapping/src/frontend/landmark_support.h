@@ -20,6 +20,9 @@ struct LandmarkSupport {
   void merge(const LandmarkSupport& other);
 };
 
+/// What one keyframe saw; its moments must not be empty.
+LandmarkSupport supportOf(const PlaneFactor& factor, const MapState& map);
+
 /// Of each plane landmark, by id. O(factors).
 std::vector<LandmarkSupport> supportsOf(const MapState& map);
 
@@ -28,6 +31,11 @@ bool touch(const LandmarkSupport& a, const LandmarkSupport& b);
 
 /// Whether the samples lie in a plane to within `gate_sigmas` of their noise (root mean square).
 bool fits(const LandmarkSupport& part, const Plane& common, double gate_sigmas);
+
+/// Whether the samples lie in the plane to within `gate_sigmas` of their noise and of distortion
+/// (root mean square).
+bool explains(const Plane& plane, const LandmarkSupport& part, const SensorModel& sensor,
+              double gate_sigmas);
 
 /// Whether distortion may be all that sets a landmark apart from a common plane.
 bool fitsDistorted(const LandmarkSupport& part, const Plane& own, const Plane& common,

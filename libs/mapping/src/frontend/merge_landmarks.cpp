@@ -3,6 +3,7 @@
 #include "opp/mapping/frontend/merge_landmarks.h"
 
 #include "frontend/landmark_support.h"
+#include "frontend/shown_distortion.h"
 
 #include <algorithm>
 #include <set>
@@ -109,16 +110,17 @@ int mergePairs(MapState& map, std::vector<LandmarkSupport>& supports, const OneP
 int mergeLandmarks(MapState& map, double gate_sigmas) {
   std::vector<LandmarkSupport> supports = supportsOf(map);
   return mergePairs(map, supports, [&](Index a, Index b, const Plane& common) {
-    return touch(supports[a], supports[b]) && fits(supports[a], common, gate_sigmas) &&
-           fits(supports[b], common, gate_sigmas);
+    return touch(supports[a], supports[b]) && !seenTogether(supports[a], supports[b]) &&
+           fits(supports[a], common, gate_sigmas) && fits(supports[b], common, gate_sigmas);
   });
 }
 
 int unifyPlanes(MapState& map, const SensorModel& sensor, const BackendParams& params) {
+  const SensorModel shown = withShownDistortion(sensor, map);
   std::vector<LandmarkSupport> supports = supportsOf(map);
   return mergePairs(map, supports, [&](Index a, Index b, const Plane& common) {
     const auto distorted = [&](Index k) {
-      return fitsDistorted(supports[k], map.landmarks.planes[k].plane_in_map, common, sensor,
+      return fitsDistorted(supports[k], map.landmarks.planes[k].plane_in_map, common, shown,
                            params.kernel_width);
     };
     return coplanar(supports[a], supports[b], common, params.coplanar_resolution) ||

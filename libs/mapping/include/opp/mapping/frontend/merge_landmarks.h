@@ -9,12 +9,12 @@
 namespace opp::mapping {
 
 /// Joins plane landmarks that have turned out to be one surface: they face the same way, their
-/// supports touch, and one plane explains the samples of both to within `gate_sigmas` (root mean
-/// square): so well that no pair loses its influence on the map (`BackendParams::kernel_width`). A
-/// laxer gate takes a board for the wall behind it, and keyframes before bare walls slide along
-/// them to make up for it. Of two, the older stays; the other
-/// keeps its id but has no observations any more. Returns how many were joined. O(planes²) plus one
-/// fit per near pair.
+/// supports touch, no keyframe told them apart, and one plane explains the samples of both to
+/// within `gate_sigmas` (root mean square): so well that no pair loses its influence on the map
+/// (`BackendParams::kernel_width`). A laxer gate takes a board for the wall behind it, and
+/// keyframes before bare walls slide along them to make up for it. Of two, the older stays; the
+/// other keeps its id but has no observations any more. Returns how many were joined. O(planes²)
+/// plus one fit per near pair.
 int mergeLandmarks(MapState& map, double gate_sigmas);
 
 /// For the finished map, joins those, too, that stand for one plane of the scene:
@@ -22,8 +22,9 @@ int mergeLandmarks(MapState& map, double gate_sigmas);
 ///   (`BackendParams::coplanar_resolution`): a wall beyond a doorway;
 /// - what only the sensor's distortion sets apart: a bent wall looks like another plane from each
 ///   viewpoint. Their samples lie about a common plane, and they are tilted to it, within
-///   `BackendParams::kernel_width` times the distortion, they touch, and no keyframe saw both: one
-///   scan tells a layer from the wall behind it by the step between them.
+///   `BackendParams::kernel_width` times the distortion that the map shows (at most the model's),
+///   they touch, and no keyframe saw both: one scan tells a layer from the wall behind it by the
+///   step between them.
 /// Not while the map grows: as measurements of one plane, bent pieces would bend the trajectory.
 /// Returns how many were joined. O(planes²).
 int unifyPlanes(MapState& map, const SensorModel& sensor, const BackendParams& params);
