@@ -120,6 +120,16 @@ int insertKeyframe(ScanFeatures features, const MatchResult& match, const Sensor
   return id;
 }
 
+void relink(MapState& map) {
+  map.factors.orthogonalities.clear();
+  map.factors.parallelisms.clear();
+  map.landmarks.corners.clear();
+  for (std::size_t k = 0; k < map.keyframes.size(); ++k) {
+    addAngles(map.keyframes[k], map.factors);
+    addCorners(static_cast<int>(k), map);
+  }
+}
+
 void updateCorners(LandmarkMap& landmarks) {
   for (CornerLandmark& corner : landmarks.corners) {
     Eigen::Matrix3d normals;

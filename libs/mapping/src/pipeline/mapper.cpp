@@ -6,6 +6,7 @@
 #include "opp/mapping/frontend/build_local_map.h"
 #include "opp/mapping/frontend/insert_keyframe.h"
 #include "opp/mapping/frontend/merge_landmarks.h"
+#include "opp/mapping/frontend/split_landmarks.h"
 #include "opp/mapping/loop/close_loose_ties.h"
 #include "opp/mapping/loop/join_parts.h"
 #include "opp/mapping/loop/keyframe_graph.h"
@@ -194,6 +195,8 @@ void Mapper::finish() {
   if (tieParts(parts_)) splitParts();
   for (MapPart& part : parts_) {
     settleMap(part.map, 1, params_);
+    if (splitLandmarks(part.map, params_.primitives.sensor, params_.backend) > 0)
+      settleMap(part.map, 1, params_);
     if (unifyPlanes(part.map, params_.primitives.sensor, params_.backend) > 0)
       updateCorners(part.map.landmarks);
   }

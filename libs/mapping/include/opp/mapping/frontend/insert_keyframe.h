@@ -17,6 +17,10 @@ namespace opp::mapping {
 int insertKeyframe(ScanFeatures features, const MatchResult& match, const SensorModel& sensor,
                    MapState& map);
 
+/// Makes anew what follows from which landmark each plane of a keyframe is: corner landmarks, right
+/// angles and parallel planes. O(keyframes × pairs of planes).
+void relink(MapState& map);
+
 /// Puts each corner landmark where its three plane landmarks now meet; to be called after their
 /// planes moved.
 void updateCorners(LandmarkMap& landmarks);
