@@ -13,11 +13,14 @@ namespace {
 struct Sequence {
   const char* name;
   const char* truth;
+  const char* config;
+  const char* every;
+  double max_error;  ///< [m] root mean square: what registration to a model reaches, with some room
 };
 
 class RecordedSequence : public testing::TestWithParam<Sequence> {};
 
-TEST_P(RecordedSequence, EveryTenthFrameIsLocalizedWithinOneAndAHalfCentimetres) {
+TEST_P(RecordedSequence, AllFramesThatAreUsedAreLocalized) {
   OPP_SKIP_WITHOUT_SHARED_DATA();
   const test::TempFolder folder;
   const auto file = [&](const char* extension) {
@@ -25,8 +28,8 @@ TEST_P(RecordedSequence, EveryTenthFrameIsLocalizedWithinOneAndAHalfCentimetres)
   };
   const test::CommandResult map =
       test::runApp("opp-map", {"-i", file(".rawlog"), "-o", (folder / "map").string(), "-c",
-                               OPP_SOURCE_FOLDER "/config/rgbd.ini", "--every", "10",
-                               "--no-octomap", "--quiet"});
+                               std::string(OPP_SOURCE_FOLDER "/config/") + GetParam().config,
+                               "--every", GetParam().every, "--no-octomap", "--quiet"});
   ASSERT_EQ(map.exit_code, 0) << map;
   const auto report = nlohmann::json::parse(test::readFile(folder / "map/run.json"));
   EXPECT_EQ(report.at("sessions").at(0).at("frames_lost"), 0);
@@ -35,15 +38,18 @@ TEST_P(RecordedSequence, EveryTenthFrameIsLocalizedWithinOneAndAHalfCentimetres)
                                 (folder / "map/trajectory.tum").string(), "--json"});
   ASSERT_EQ(eval.exit_code, 0) << eval;
   const auto error = nlohmann::json::parse(eval.out).at("trajectory");
-  // What point-to-model registration reaches on these sequences, with some room.
-  EXPECT_LT(error.at("ate").at("translation_m").at("rmse"), 0.015);
+  EXPECT_LT(error.at("ate").at("translation_m").at("rmse"), GetParam().max_error);
 }
 
-INSTANTIATE_TEST_SUITE_P(All, RecordedSequence,
-                         testing::Values(Sequence{"tum_fr3_structure_notexture_far", ".gt.tum"},
-                                         Sequence{"icl_of_kt3", ".gt.tum"},
-                                         Sequence{"redwood_livingroom1", ".ref.tum"}),
-                         [](const auto& sequence) { return std::string(sequence.param.name); });
+// The hall is symmetric, and steps of 1.8 m with turns of 40° are more than motion expects: what is
+// lost there is found again the wrong way round.
+INSTANTIATE_TEST_SUITE_P(
+    All, RecordedSequence,
+    testing::Values(Sequence{"tum_fr3_structure_notexture_far", ".gt.tum", "rgbd.ini", "10", 0.015},
+                    Sequence{"icl_of_kt3", ".gt.tum", "rgbd.ini", "10", 0.015},
+                    Sequence{"redwood_livingroom1", ".ref.tum", "rgbd.ini", "10", 0.015},
+                    Sequence{"simulated_lidar_hall", ".gt.tum", "lidar.ini", "1", 0.005}),
+    [](const auto& sequence) { return std::string(sequence.param.name); });
 
 }  // namespace
 }  // namespace opp

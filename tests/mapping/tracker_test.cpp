@@ -298,7 +298,7 @@ TEST(Tracker, DoesNotBelieveAJumpThatNoBodyMakes) {
 TEST(Tracker, WhatMotionCallsImpossibleMustExplainMostOfTheScan) {
   for (std::uint64_t room = 0; room < 10; ++room) {
     for (const double shift : {0.0, 0.12}) {
-      for (const double clutter : {0.0, 0.3, 0.5}) {
+      for (const double clutter : {0.0, 0.4, 0.5}) {
         Started started = startAt(room, poseAt(0.0, 0.0));
         for (int step = 1; step <= 5; ++step)
           started.tracker.track(test::scanOfRoom(room, step, poseAt(0.0, 0.0)), std::nullopt,

@@ -82,7 +82,7 @@ void moveToNewLandmark(const Set& set, int from, MapState& map) {
   PlaneLandmark landmark{set.plane, {}};
   auto& old = map.landmarks.planes[Index(from)].observations;
   for (const Observation& observation : set.members) {
-    const auto [keyframe, plane] = observation.seen;
+    const int keyframe = observation.seen.keyframe, plane = observation.seen.primitive;
     map.factors.planes[observation.factor].landmark = id;
     map.keyframes[Index(keyframe)].landmark_of_plane[Index(plane)] = id;
     landmark.observations.push_back(observation.seen);

@@ -178,11 +178,11 @@ bool Tracker::surprises(const PosePrior& predicted, const ScanFeatures& scan,
 
 /// Little structure beside a bare wall can lead registration off along the wall, and a body that
 /// was carried off may come to a place that looks much the same. What motion calls impossible must
-/// leave next to nothing of the scan unexplained, and do no worse than what motion says.
+/// leave little of the scan unexplained, and do no worse than what motion says.
 bool Tracker::slidAway(const MatchResult& match, const PosePrior& predicted,
                        const ScanFeatures& scan, const Keyframe& newest) const {
   if (predicted.squaredSigmas(match.map_from_body) <= kPossible) return false;
-  return match.overlap < params_.frontend.keyframe_overlap ||
+  return match.overlap < params_.frontend.leap_overlap ||
          clarity(verified(match.map_from_body, scan, newest, params_),
                  verified(predicted.map_from_body, scan, newest, params_)) <
              -params_.global_alignment.min_slide_clarity;
