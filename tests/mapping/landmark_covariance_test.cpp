@@ -3,6 +3,7 @@
 #include "planar/landmark_covariance.h"
 
 #include "support/random.h"
+#include "support/sensors.h"
 
 #include <gtest/gtest.h>
 
@@ -36,12 +37,6 @@ MapState wallSeenBy(int views, double size, test::Random& random) {
   return map;
 }
 
-SensorModel distorted(double quadratic) {
-  SensorModel sensor;
-  sensor.distortion_quadratic = quadratic;
-  return sensor;
-}
-
 struct Deviation {
   double position, tilt;
 };
@@ -55,21 +50,21 @@ Deviation deviationOf(const MapState& map, const SensorModel& sensor) {
 
 TEST(LandmarkCovariance, IsThatOfTheNoiseWithoutDistortion) {
   test::Random random(1);
-  const Deviation d = deviationOf(wallSeenBy(1, 0.3, random), distorted(0.0));
+  const Deviation d = deviationOf(wallSeenBy(1, 0.3, random), test::sensorThatBends(0.0));
   EXPECT_NEAR(d.position, kSigma / 20.0, 1e-6);
   EXPECT_NEAR(d.tilt, kSigma / 20.0 / (0.3 / std::sqrt(12.0)), 1e-5);
 }
 
 TEST(LandmarkCovariance, DistortionIsOneErrorOfASmallPatch) {
   test::Random random(2);
-  const Deviation d = deviationOf(wallSeenBy(1, 0.3, random), distorted(0.002));
+  const Deviation d = deviationOf(wallSeenBy(1, 0.3, random), test::sensorThatBends(0.002));
   EXPECT_NEAR(d.position, 0.018, 0.001);
   EXPECT_NEAR(d.tilt, 0.06, 0.003);
 }
 
 TEST(LandmarkCovariance, OtherViewsAndWiderOnesKnowBetter) {
   test::Random random(3);
-  const SensorModel sensor = distorted(0.002);
+  const SensorModel sensor = test::sensorThatBends(0.002);
   const Deviation once = deviationOf(wallSeenBy(1, 0.3, random), sensor);
   const Deviation often = deviationOf(wallSeenBy(9, 0.3, random), sensor);
   const Deviation wide = deviationOf(wallSeenBy(1, 1.8, random), sensor);  // 6 × 6 such patches
@@ -82,7 +77,7 @@ TEST(LandmarkCovariance, OtherViewsAndWiderOnesKnowBetter) {
 TEST(LandmarkCovariance, ASurfaceThatNobodySawIsUnknown) {
   MapState map;
   map.landmarks.planes.push_back({Plane::fromCoefficients({-1, 0, 0}, 3.0), {}});
-  EXPECT_GE(deviationOf(map, distorted(0.002)).position, 1.0);
+  EXPECT_GE(deviationOf(map, test::sensorThatBends(0.002)).position, 1.0);
 }
 
 }  // namespace

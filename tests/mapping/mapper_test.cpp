@@ -6,6 +6,7 @@
 #include "opp/mapping/planar/planar_map_of_landmarks.h"
 
 #include "support/random.h"
+#include "support/sensors.h"
 #include "support/synthetic_features.h"
 
 #include <gtest/gtest.h>
@@ -169,8 +170,7 @@ TEST(PlanarMapOf, DescribesTheRoom) {
 
 TEST(PlanarMapOf, LeavesOutPlanesWhosePlaceIsUncertain) {
   const Mapper mapper = mapRoom(2, 20, 0.001);
-  SensorModel sensor;
-  sensor.distortion_quadratic = 0.02;
+  const SensorModel sensor = test::sensorThatBends(0.02);
   PlanarParams params;
   params.max_position_error = 100.0;
   const std::size_t all = planarMapOf(mapper.map(), sensor, params).planes.size();

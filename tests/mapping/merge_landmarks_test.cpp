@@ -3,8 +3,10 @@
 #include "opp/mapping/frontend/merge_landmarks.h"
 
 #include "opp/geometry/constants.h"
+#include "opp/mapping/frontend/insert_keyframe.h"
 
 #include "support/random.h"
+#include "support/sensors.h"
 
 #include <gtest/gtest.h>
 
@@ -69,11 +71,8 @@ void addDistortedView(double x, double angle, double height, MapState& map, test
       transformed(shown_from_flat, map.landmarks.planes.back().plane_in_map);
 }
 
-SensorModel distortedSensor() {
-  SensorModel sensor;
-  sensor.distortion_quadratic = 0.002;  // 18 mm and 3.4° at 3 m
-  return sensor;
-}
+/// 18 mm and 3.4° at 3 m.
+SensorModel distortedSensor() { return test::sensorThatBends(0.002); }
 
 TEST(UnifyPlanes, AWallBentAnotherWayFromEachViewIsOnePlane) {
   for (std::uint64_t seed = 0; seed < 50; ++seed) {
@@ -123,9 +122,7 @@ TEST(UnifyPlanes, ASensorWithoutDistortionExcusesNothing) {
   MapState map;
   addDistortedView(0.0, 0.0, 0.0, map, random);
   addDistortedView(0.4, degToRad(6.0), 0.03, map, random);
-  SensorModel sensor;
-  sensor.distortion_quadratic = 0.0;
-  EXPECT_EQ(unifyPlanes(map, sensor, BackendParams()), 0);
+  EXPECT_EQ(unifyPlanes(map, test::sensorThatBends(0.0), BackendParams()), 0);
 }
 
 TEST(UnifyPlanes, AWallBeyondADoorwayIsTheSamePlane) {
@@ -180,11 +177,23 @@ TEST(MergeLandmarks, WhatAKeyframeToldApartStaysTwo) {
 TEST(MergeLandmarks, RightAnglesAndCornersFollow) {
   test::Random random(2);
   MapState map;
-  for (const double x : {0.0, 0.9, 5.0, 10.0}) addPatch(x, 0.0, map, random);
-  map.factors.orthogonalities = {{{0, 1}}, {{0, 2}}, {{1, 2}}};
-  map.landmarks.corners = {{{0, 2, 3}, Eigen::Vector3d::Zero(), {{0, 0}}},
-                           {{1, 2, 3}, Eigen::Vector3d::Zero(), {{1, 0}}},
-                           {{0, 1, 2}, Eigen::Vector3d::Zero(), {{2, 0}}}};
+  addPatch(0.0, 0.0, map, random);
+  addPatch(0.9, 0.0, map, random);
+  for (const Plane& wall :
+       {Plane::fromCoefficients({1, 0, 0}, 1.0), Plane::fromCoefficients({0, 1, 0}, 1.0)})
+    map.landmarks.planes.push_back({wall, {}});
+  for (Keyframe& keyframe : map.keyframes) {
+    keyframe.landmark_of_plane.insert(keyframe.landmark_of_plane.end(), {2, 3});
+    Primitives& seen = keyframe.features.primitives_in_body;
+    seen.planes.resize(3);
+    seen.edges = {{{0, 1}, 1.0}};
+    Corner corner;
+    corner.planes = {0, 1, 2};
+    seen.corners = {corner};
+  }
+  relink(map);
+  ASSERT_EQ(map.factors.orthogonalities.size(), 2U);
+  ASSERT_EQ(map.landmarks.corners.size(), 2U);
   ASSERT_EQ(mergeLandmarks(map, kGate), 1);
   ASSERT_EQ(map.factors.orthogonalities.size(), 1U);
   EXPECT_EQ(map.factors.orthogonalities[0].landmarks, (std::array<int, 2>{0, 2}));

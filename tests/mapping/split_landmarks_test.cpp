@@ -3,6 +3,7 @@
 #include "opp/mapping/frontend/split_landmarks.h"
 
 #include "support/random.h"
+#include "support/sensors.h"
 
 #include <gtest/gtest.h>
 
@@ -36,11 +37,7 @@ MapState mapOfOne(const std::vector<double>& heights, test::Random& random) {
   return map;
 }
 
-SensorModel sensorThatBends(double distortion_quadratic) {
-  SensorModel sensor;
-  sensor.distortion_quadratic = distortion_quadratic;
-  return sensor;
-}
+using test::sensorThatBends;
 
 TEST(SplitLandmarks, TwoTableTopsComeApart) {
   for (std::uint64_t seed = 0; seed < 50; ++seed) {

@@ -42,11 +42,16 @@ void addPlaneFactors(int id, const SensorModel& sensor, MapState& map) {
   const Keyframe& keyframe = map.keyframes[static_cast<std::size_t>(id)];
   const std::vector<PlaneSamples> planes = planeSamples(keyframe.features, sensor);
   for (std::size_t p = 0; p < planes.size(); ++p) {
-    const int landmark = keyframe.landmark_of_plane[p];
-    map.landmarks.planes[static_cast<std::size_t>(landmark)].observations.push_back(
-        {id, static_cast<int>(p)});
     map.factors.planes.push_back(
-        {id, landmark, planes[p].moments_in_body, planes[p].effective_count});
+        {id, keyframe.landmark_of_plane[p], planes[p].moments_in_body, planes[p].effective_count});
+  }
+}
+
+void addObservations(int id, MapState& map) {
+  const std::vector<int>& landmarks = map.keyframes[static_cast<std::size_t>(id)].landmark_of_plane;
+  for (std::size_t p = 0; p < landmarks.size(); ++p) {
+    map.landmarks.planes[static_cast<std::size_t>(landmarks[p])].observations.push_back(
+        {id, static_cast<int>(p)});
   }
 }
 
@@ -96,6 +101,13 @@ void addCorners(int id, MapState& map) {
   }
 }
 
+/// What follows from which landmark each of a keyframe's planes is.
+void link(int id, MapState& map) {
+  addObservations(id, map);
+  addAngles(map.keyframes[static_cast<std::size_t>(id)], map.factors);
+  addCorners(id, map);
+}
+
 void addRelativePose(int id, const Matrix6d& point_information, MapState& map) {
   if (id == 0) return;
   const Eigen::Isometry3d& first = map.keyframes[static_cast<std::size_t>(id - 1)].map_from_body;
@@ -114,20 +126,22 @@ int insertKeyframe(ScanFeatures features, const MatchResult& match, const Sensor
   keyframe.landmark_of_plane = assignLandmarks(keyframe, match.planes, map.landmarks);
   map.keyframes.push_back(std::move(keyframe));
   addPlaneFactors(id, sensor, map);
-  addAngles(map.keyframes.back(), map.factors);
-  addCorners(id, map);
+  link(id, map);
   addRelativePose(id, match.point_information, map);
   return id;
 }
 
 void relink(MapState& map) {
+  std::vector<std::size_t> planes(map.keyframes.size());
+  for (PlaneFactor& factor : map.factors.planes) {
+    const auto k = static_cast<std::size_t>(factor.keyframe);
+    factor.landmark = map.keyframes[k].landmark_of_plane[planes[k]++];
+  }
+  for (PlaneLandmark& landmark : map.landmarks.planes) landmark.observations.clear();
   map.factors.orthogonalities.clear();
   map.factors.parallelisms.clear();
   map.landmarks.corners.clear();
-  for (std::size_t k = 0; k < map.keyframes.size(); ++k) {
-    addAngles(map.keyframes[k], map.factors);
-    addCorners(static_cast<int>(k), map);
-  }
+  for (std::size_t k = 0; k < map.keyframes.size(); ++k) link(static_cast<int>(k), map);
 }
 
 void updateCorners(LandmarkMap& landmarks) {

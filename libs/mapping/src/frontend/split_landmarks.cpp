@@ -16,20 +16,18 @@ namespace {
 using Index = std::size_t;
 
 struct Observation {
-  Index factor = 0;  ///< index
   PrimitiveObservation seen;
   LandmarkSupport support;
 };
 
-/// Of each landmark. A keyframe's factors are those of its planes, in order.
+/// Of each landmark.
 std::vector<std::vector<Observation>> observationsOf(const MapState& map) {
   std::vector<std::vector<Observation>> result(map.landmarks.planes.size());
   std::vector<int> planes(map.keyframes.size());
-  for (Index f = 0; f < map.factors.planes.size(); ++f) {
-    const PlaneFactor& factor = map.factors.planes[f];
+  for (const PlaneFactor& factor : map.factors.planes) {
     const int plane = planes[Index(factor.keyframe)]++;
     if (factor.moments_in_body.empty()) continue;
-    result[Index(factor.landmark)].push_back({f, {factor.keyframe, plane}, supportOf(factor, map)});
+    result[Index(factor.landmark)].push_back({{factor.keyframe, plane}, supportOf(factor, map)});
   }
   return result;
 }
@@ -77,27 +75,13 @@ std::vector<Set> agreeingSets(std::vector<Observation> observations, const Plane
   return sets;
 }
 
-void moveToNewLandmark(const Set& set, int from, MapState& map) {
+void moveToNewLandmark(const Set& set, MapState& map) {
   const auto id = static_cast<int>(map.landmarks.planes.size());
-  PlaneLandmark landmark{set.plane, {}};
-  auto& old = map.landmarks.planes[Index(from)].observations;
+  map.landmarks.planes.push_back({set.plane, {}});
   for (const Observation& observation : set.members) {
-    const int keyframe = observation.seen.keyframe, plane = observation.seen.primitive;
-    map.factors.planes[observation.factor].landmark = id;
-    map.keyframes[Index(keyframe)].landmark_of_plane[Index(plane)] = id;
-    landmark.observations.push_back(observation.seen);
-    old.erase(std::remove_if(old.begin(), old.end(),
-                             [&](const PrimitiveObservation& o) {
-                               return o.keyframe == keyframe && o.primitive == plane;
-                             }),
-              old.end());
+    Keyframe& keyframe = map.keyframes[Index(observation.seen.keyframe)];
+    keyframe.landmark_of_plane[Index(observation.seen.primitive)] = id;
   }
-  std::sort(landmark.observations.begin(), landmark.observations.end(),
-            [](const PrimitiveObservation& a, const PrimitiveObservation& b) {
-              return std::make_pair(a.keyframe, a.primitive) <
-                     std::make_pair(b.keyframe, b.primitive);
-            });
-  map.landmarks.planes.push_back(std::move(landmark));
 }
 
 }  // namespace
@@ -112,7 +96,7 @@ int splitLandmarks(MapState& map, const SensorModel& sensor, const BackendParams
         agreeingSets(observations[l], landmark.plane_in_map, shown, params.kernel_width);
     if (sets.size() == 1) continue;
     landmark.plane_in_map = sets.front().plane;
-    for (Index k = 1; k < sets.size(); ++k) moveToNewLandmark(sets[k], static_cast<int>(l), map);
+    for (Index k = 1; k < sets.size(); ++k) moveToNewLandmark(sets[k], map);
   }
   const auto added = static_cast<int>(map.landmarks.planes.size() - observations.size());
   if (added > 0) relink(map);

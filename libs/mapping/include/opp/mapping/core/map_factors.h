@@ -43,7 +43,7 @@ struct ParallelismFactor {
 
 /// All that ties poses and landmarks together.
 struct MapFactors {
-  std::vector<PlaneFactor> planes;
+  std::vector<PlaneFactor> planes;  ///< of a keyframe in the order of its planes
   std::vector<RelativePoseFactor> relative_poses;
   std::vector<OrthogonalityFactor> orthogonalities;  ///< each pair once, ascending ids
   std::vector<ParallelismFactor> parallelisms;       ///< each pair once, ascending ids

@@ -17,8 +17,9 @@ namespace opp::mapping {
 int insertKeyframe(ScanFeatures features, const MatchResult& match, const SensorModel& sensor,
                    MapState& map);
 
-/// Makes anew what follows from which landmark each plane of a keyframe is: corner landmarks, right
-/// angles and parallel planes. O(keyframes × pairs of planes).
+/// Makes anew what follows from which landmark each plane of a keyframe is
+/// (`Keyframe::landmark_of_plane`): the landmarks of the plane factors, observations, corner
+/// landmarks, right angles and parallel planes. O(keyframes × pairs of planes).
 void relink(MapState& map);
 
 /// Puts each corner landmark where its three plane landmarks now meet; to be called after their
