@@ -2,27 +2,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "opp/mapping/registration/plane_samples.h"
 
-#include <Eigen/Eigenvalues>
+#include "opp/cloud/rim_error.h"
 
-#include <cmath>
-#include <limits>
+#include <Eigen/Eigenvalues>
 
 namespace opp::mapping {
 namespace {
 
-/// Patches at the rim of a surface take in some of its neighbour: a share 1 − u ≤ 1/2, which at a
-/// right angle puts them (1 − u)²/2 of their extent off, this much (root mean square).
-constexpr double kRimShift = 0.056;
-
-/// Variance of a plane's offset that patches at its rims cause [m²]: on a strip of width w the
-/// share extent/w of the samples lies along either.
-double rimVariance(const PointMoments& moments, double patch_area) {
+/// Variance of a plane's offset that patches of `squared_extent` at its rims cause [m²].
+double rimVariance(const PointMoments& moments, double squared_extent) {
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(moments.scatter(),
                                                             Eigen::EigenvaluesOnly);
-  // A rectangle of width w has variance w²/12.
-  const double squared_width = 12.0 * axes.eigenvalues()[1] / moments.weight();
-  if (!(squared_width > 0.0)) return std::numeric_limits<double>::infinity();
-  return std::pow(2.0 * kRimShift * patch_area, 2) / squared_width;
+  const double shift = rimError(squared_extent, axes.eigenvalues()[1] / moments.weight()).shift;
+  return shift * shift;
 }
 
 }  // namespace

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "refinement/sample_assignment.h"
 
+#include "opp/cloud/rim_error.h"
+
 #include "refinement/candidates.h"
 
 #include <Eigen/Eigenvalues>
@@ -15,9 +17,6 @@ namespace {
 
 /// Misfit of a plane counts if noise alone would not produce it in 19 of 20 planes.
 constexpr double kChanceSigmas = 2.0;
-
-/// Patches at the rim turn the fit of a strip by this times (extent/width)²: see information().
-constexpr double kRimTurn = 0.75;
 /// A sample this near to a plane needs no other explanation.
 constexpr double kExplainedSigmas = 2.0;
 /// (1e-9 m)²: below any sensor's noise, and no division by zero at the origin.
@@ -95,13 +94,12 @@ Eigen::Matrix3d PlaneFit::information(const Eigen::Vector3d& normal) const {
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes(tangents.transpose() *
                                                             moments.scatter() * tangents);
   const double squared_extent = sums.patch_area / sums.support;
-  Eigen::Vector2d known;
+  Eigen::Vector2d known = Eigen::Vector2d::Zero();
   for (int k = 0; k < 2; ++k) {
-    const double points = std::max(0.0, axes.eigenvalues()[k]);
-    // w² = 12 variances.
-    const double variance = points / moments.weight();
-    const double rim = points > 0.0 ? kRimTurn * squared_extent / (12.0 * variance) : 1.0;
-    known[k] = points / (1.0 + points * rim * rim);
+    const double points = axes.eigenvalues()[k];
+    if (!(points > 0.0)) continue;
+    const double turn = rimError(squared_extent, points / moments.weight()).turn;
+    known[k] = points / (1.0 + points * turn * turn);
   }
   const Eigen::Matrix<double, 3, 2> directions = tangents * axes.eigenvectors();
   return directions * known.asDiagonal() * directions.transpose();

@@ -87,10 +87,8 @@ struct PlaneFit {
   bool uncertain = false;     ///< its direction is not known
   Eigen::AlignedBox3d reach;  ///< where its samples can be
 
-  /// What the samples say about the normal, as a scatter matrix [1/rad²] about `normal`. Patches at
-  /// the rim of a surface are averages that take in some of its neighbour: at a right angle they
-  /// are an eighth of their extent off. Those along one side of a strip of width w turn its fit by
-  /// 0.75 (extent/w)² rad, which counts as a standard deviation.
+  /// What the samples say about the normal, as a scatter matrix [1/rad²] about `normal`. What the
+  /// rims turn a strip by (RimError) counts as a standard deviation.
   Eigen::Matrix3d information(const Eigen::Vector3d& normal) const;
 };
 

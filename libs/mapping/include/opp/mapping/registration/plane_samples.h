@@ -24,7 +24,8 @@ struct PlaneSamples {
   double effective_count = 0.0;
 };
 
-/// The samples of each plane of a scan, by index of the plane. O(samples).
+/// The samples of each plane of a scan, by index of the plane; of a strip they are worth the less
+/// the more what its rims take in may shift it (RimError). O(samples).
 std::vector<PlaneSamples> planeSamples(const ScanFeatures& scan, const SensorModel& sensor);
 
 }  // namespace opp::mapping
