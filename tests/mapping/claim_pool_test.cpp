@@ -38,6 +38,21 @@ TEST(ClaimPool, BelievesWhatSeveralKeyframesSay) {
   }
 }
 
+TEST(ClaimPool, TwoKeyframesThatLookAtEachOtherAreOneWitness) {
+  test::Random random(7);
+  const Eigen::Isometry3d pose = random.pose(3.0);
+  ClaimPool pool(LoopParams(), 2);
+  pool.add(claimOf(7, pose));
+  PlaceClaim back = claimOf(7, pose);
+  back.claimant = {1, 3};
+  back.b_looked = false;
+  pool.add(back);
+  EXPECT_TRUE(pool.agreed().empty());
+  back.claimant = {1, 4};
+  pool.add(back);
+  EXPECT_EQ(pool.agreed().size(), 3U) << "two of the other side";
+}
+
 TEST(ClaimPool, IsSilentWhereKeyframesContradictEachOther) {
   ClaimPool pool(LoopParams(), LoopParams().confirmations);
   const Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();

@@ -13,6 +13,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <utility>
 
 namespace opp::mapping {
 namespace {
@@ -150,10 +151,11 @@ void append(MapPart other, MapPart& part) {
 TEST(JoinParts, ClaimsThatMotionDeniesTogetherNeedTwiceAsManyKeyframes) {
   const test::Rectangles room = test::furnishedRoom(1), other = test::furnishedRoom(4);
   // The second part sees the one room, the third the other. From the one to the other the body went
-  // as the first part has it, or elsewhere: then one of both rooms is another like it.
+  // as the first part has it, or elsewhere: then one of both rooms is another like it. Few scans of
+  // the first part saw the one room: it is the second part's keyframes that count.
   for (const bool elsewhere : {false, true}) {
     for (const int scans : {12, 32}) {
-      std::vector<MapPart> parts = {partOf(room, 0, 0, 16), partOf(room, 1, 400, scans),
+      std::vector<MapPart> parts = {partOf(room, 0, 0, 6), partOf(room, 1, 400, scans),
                                     partOf(other, 2, 600, 32)};
       append(partOf(other, 0, 200, 16), parts[0]);
       const int last = 400 + scans - 1;
@@ -169,6 +171,17 @@ TEST(JoinParts, ClaimsThatMotionDeniesTogetherNeedTwiceAsManyKeyframes) {
       joinParts(parts, MapperParams());
       EXPECT_EQ(parts.size(), !elsewhere ? 1U : scans == 32 ? 3U : 2U) << elsewhere << scans;
     }
+  }
+}
+
+TEST(JoinParts, AShortPartJoinsALongOneWhicheverCameFirst) {
+  const test::Rectangles room = test::furnishedRoom(2);
+  const MapPart short_part = partOf(room, 0, 0, 5), long_part = partOf(room, 1, 40, 32);
+  for (const bool short_first : {true, false}) {
+    std::vector<MapPart> parts = {short_part, long_part};
+    if (!short_first) std::swap(parts[0], parts[1]);
+    joinParts(parts, MapperParams());
+    EXPECT_EQ(parts.size(), 1U) << short_first;
   }
 }
 

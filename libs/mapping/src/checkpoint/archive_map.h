@@ -143,9 +143,9 @@ void serialize(Archive& archive, LostScan& value) {
 template <typename Archive>
 void serialize(Archive& archive, PlaceClaim& value) {
   auto& [keyframe_a, keyframe_b, keyframe_a_from_b, variance, information, map_a_from_map_b,
-         place_in_map_b, clarity, claimant] = value;
+         place_in_map_b, clarity, claimant, b_looked] = value;
   archive(keyframe_a, keyframe_b, keyframe_a_from_b, variance, information, map_a_from_map_b,
-          place_in_map_b, clarity, claimant);
+          place_in_map_b, clarity, claimant, b_looked);
 }
 
 template <typename Archive>

@@ -19,13 +19,14 @@ PlaceClaim seenFromOther(const PlaceClaim& claim) {
   result.information = back.transpose() * claim.information * back;
   result.map_a_from_map_b = claim.map_a_from_map_b.inverse();
   result.place_in_map_b = claim.map_a_from_map_b * claim.place_in_map_b;
+  result.b_looked = !claim.b_looked;
   return result;
 }
 
 std::size_t claimantsOf(const std::vector<PlaceClaim>& claims) {
-  std::set<ScanId> claimants;
-  for (const PlaceClaim& c : claims) claimants.insert(c.claimant);
-  return claimants.size();
+  std::set<ScanId> of_a, of_b;
+  for (const PlaceClaim& c : claims) (c.b_looked ? of_b : of_a).insert(c.claimant);
+  return std::max(of_a.size(), of_b.size());
 }
 
 bool ClaimPool::agree(const PlaceClaim& x, const PlaceClaim& y) const {

@@ -61,11 +61,11 @@ class Joiner {
     int keyframe;
   };
 
-  /// Keyframes of older parts that resemble the scan most, each at a place of its own.
+  /// Keyframes of other parts that resemble the scan most, each at a place of its own.
   std::vector<Candidate> candidates(Index claimant, const Primitives& primitives) const {
     std::vector<Candidate> ranked;
-    for (Index p = 0; p < claimant; ++p) {
-      if (parts_[p].history.sharesOrigin(parts_[claimant].history)) continue;
+    for (Index p = 0; p < parts_.size(); ++p) {
+      if (p == claimant || parts_[p].history.sharesOrigin(parts_[claimant].history)) continue;
       const std::vector<double> likeness = parts_[p].index.likeness(primitives);
       for (Index k = 0; k < likeness.size(); ++k) {
         ranked.push_back({likeness[k], p, static_cast<int>(k)});
@@ -99,8 +99,12 @@ class Joiner {
       const auto match =
           matchPlace(other, c.keyframe, scan, own_place.features, std::nullopt, params_);
       if (!match) continue;
-      claims_.push_back({c.part, part, claimOf(other, *match, own, keyframe)});
-      claims_.back().claim.clarity = match->clarity;
+      PlaceClaim claim = claimOf(other, *match, own, keyframe);
+      claim.clarity = match->clarity;
+      if (c.part < part)
+        claims_.push_back({c.part, part, claim});
+      else
+        claims_.push_back({part, c.part, seenFromOther(claim)});
     }
   }
 

@@ -27,12 +27,14 @@ struct PlaceClaim {
   Eigen::Vector3d place_in_map_b = Eigen::Vector3d::Zero();  ///< where the claim was made [m]
   double clarity = 0.0;                                      ///< see PlaceMatch
   ScanId claimant;                                           ///< the keyframe that looked: a or b
+  bool b_looked = true;                                      ///< `claimant` is keyframe b
 };
 
 /// The same claim with a and b swapped; the variance is taken to be that of a's view, too.
 PlaceClaim seenFromOther(const PlaceClaim& claim);
 
-/// How many different keyframes claim these.
+/// How many different keyframes of one of the two frames claim these, whichever has more: two that
+/// look at each other's places see the same likeness.
 std::size_t claimantsOf(const std::vector<PlaceClaim>& claims);
 
 /// Claims about the same two frames, waiting for enough of them to agree. A single scan can fit at

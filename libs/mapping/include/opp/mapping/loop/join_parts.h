@@ -11,8 +11,8 @@ namespace opp::mapping {
 
 /// Makes one of parts that are proven to show the same place; to be called once no more scans come.
 ///
-/// Some tens of keyframes of each part, spread evenly, are compared with the keyframes of older
-/// parts that they resemble most; each pose that is found is a claim. Two parts are joined when
+/// Some tens of keyframes of each part, spread evenly, are compared with the keyframes of the
+/// others that they resemble most; each pose that is found is a claim. Two parts are joined when
 /// several keyframes make the same claim (ClaimPool), the keyframes of both do not stand in each
 /// other's free space under it, and the body could have moved so in the time between. A place that
 /// is recognized where one of these says that it cannot be has others like it, and proves nothing
