@@ -51,11 +51,11 @@ MotionState givenRate(const MotionState& state, const MotionState& measured) {
 }  // namespace
 
 OpenPassage::OpenPassage(int keyframe, double timestamp, MotionState first_from_body,
-                         const Matrix6d& tied)
+                         PosePrior tied)
     : keyframe_(keyframe),
       timestamp_(timestamp),
       first_from_body_(std::move(first_from_body)),
-      tied_(tied) {}
+      tied_(std::move(tied)) {}
 
 void OpenPassage::follow(const StampedPose& later, const Matrix6d& information) {
   later_.push_back({later, information});
@@ -80,17 +80,19 @@ PosePrior OpenPassage::smoothed(const FrontendParams& params) const {
   return {both.map_from_body, inverse(both.covariance.topLeftCorner<6, 6>())};
 }
 
-void OpenPassage::tighten(const FrontendParams& params, MapState& map) const {
-  if (later_.empty()) return;
+void OpenPassage::tighten(const FrontendParams& params, MapState& map) {
   const auto tie = std::find_if(
       map.factors.relative_poses.begin(), map.factors.relative_poses.end(),
       [&](const RelativePoseFactor& f) { return f.second == keyframe_ && !f.is_loop; });
   if (tie == map.factors.relative_poses.end()) return;
   const PosePrior motion = smoothed(params);
-  tie->information += motion.information - tied_;
-  const Vector6d shift = difference(tie->first_from_second, motion.map_from_body);
-  tie->first_from_second = retract(
-      tie->first_from_second, tie->information.ldlt().solve(Vector6d(motion.information * shift)));
+  const auto pull = [&](const PosePrior& prior) -> Vector6d {
+    return prior.information * difference(tie->first_from_second, prior.map_from_body);
+  };
+  const Vector6d change = pull(motion) - pull(tied_);
+  tie->information += motion.information - tied_.information;
+  tie->first_from_second = retract(tie->first_from_second, tie->information.ldlt().solve(change));
+  tied_ = motion;
 }
 
 }  // namespace opp::mapping

@@ -88,7 +88,8 @@ FrameResult Mapper::begin(ScanFeatures scan,
   loop_closer_.reset();
   local_.clear();
   tracker_.start({scan.timestamp, match.map_from_body}, odom_from_body);
-  addKeyframe(std::move(scan), match);
+  insert(std::move(scan), match);
+  settleNewest();
   return {true, true, 1.0, 0.0};
 }
 
@@ -104,7 +105,7 @@ std::optional<ExpectedBeginning> Mapper::expectedBeginning(
       informationIn(last_from_map.linear().transpose(), expected->information)};
 }
 
-void Mapper::addKeyframe(ScanFeatures scan, const MatchResult& match) {
+int Mapper::insert(ScanFeatures scan, const MatchResult& match) {
   MapState& map = active();
   const int id = insertKeyframe(std::move(scan), match, params_.primitives.sensor, map);
   const Keyframe& keyframe = map.keyframes.back();
@@ -112,9 +113,14 @@ void Mapper::addKeyframe(ScanFeatures scan, const MatchResult& match) {
                        keyframe.features.scan_index, id, Eigen::Isometry3d::Identity()});
   parts_.back().index.add(keyframe.features.primitives_in_body);
   linkKeyframe(local_, match.covariance, params_.loop, map);
-  settleMap(map, std::max(1, id + 1 - params_.backend.window), params_);
+  return id;
+}
+
+void Mapper::settleNewest() {
+  MapState& map = active();
+  const int newest = static_cast<int>(map.keyframes.size()) - 1;
+  settleMap(map, std::max(1, newest + 1 - params_.backend.window), params_);
   if (params_.loop.close_loops) loop_closer_.close(map);
-  const int newest = static_cast<int>(active().keyframes.size()) - 1;
   local_ = connectedViews(active(), newest, params_.frontend.local_keyframes, params_);
   tracker_.setLocalMap(localMapOf(active(), local_, params_));
   tracker_.correct(active().keyframes.back().map_from_body);
@@ -129,18 +135,21 @@ void Mapper::follow(const ScanFeatures& scan, const Eigen::Isometry3d& map_from_
 }
 
 void Mapper::addTracked(ScanFeatures scan, const TrackResult& track) {
-  const auto id = static_cast<int>(active().keyframes.size());
+  const double timestamp = scan.timestamp;
   const Eigen::Isometry3d first_from_map = active().keyframes.back().map_from_body.inverse();
-  OpenPassage passage(id, scan.timestamp, inFrame(first_from_map, track.predicted),
-                      informationIn(first_from_map.linear().transpose(), track.motion_information));
-  addKeyframe(std::move(scan), track.match);
-  // Scans to come are registered against this keyframe alone: of how it lies to those before, they
-  // say how fast the body was.
-  if (viewVariance(track.match.covariance, active().keyframes.back()) <=
-      connectedVariance(active(), id, params_))
-    return;
-  closePassage();
-  passage_ = std::move(passage);
+  const int id = insert(std::move(scan), track.match);
+  // The map knows what the scan saw, but not where motion, and the scans since the last keyframe,
+  // had it.
+  if (viewVariance(covarianceOf(track.match.information), active().keyframes.back()) >
+      connectedVariance(active(), id, params_)) {
+    closePassage();
+    passage_.emplace(
+        id, timestamp, inFrame(first_from_map, track.predicted),
+        PosePrior{first_from_map * track.match.map_from_body,
+                  informationIn(first_from_map.linear().transpose(), track.motion_information)});
+    passage_->tighten(params_.frontend, active());
+  }
+  settleNewest();
 }
 
 void Mapper::followPassage(double timestamp, const MatchResult& match) {

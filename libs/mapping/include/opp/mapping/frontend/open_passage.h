@@ -18,8 +18,8 @@ class OpenPassage {
  public:
   /// \param keyframe the one at the end of the passage, tied to the one before
   /// \param first_from_body what motion predicted at it, in the frame of the keyframe before
-  /// \param tied what motion adds to the information of the tie so far, in the same axes
-  OpenPassage(int keyframe, double timestamp, MotionState first_from_body, const Matrix6d& tied);
+  /// \param tied what the tie has from motion so far, in the same frame
+  OpenPassage(int keyframe, double timestamp, MotionState first_from_body, PosePrior tied);
 
   int keyframe() const { return keyframe_; }
 
@@ -30,13 +30,12 @@ class OpenPassage {
   /// Whether so many scans have followed that more would say little.
   bool isFollowed() const;
 
-  /// What motion says of the keyframe's body, before and after, in the frame of the keyframe
-  /// before.
+  /// What motion says of the keyframe's body in the frame of the keyframe before: before, and as
+  /// far as scans have followed, after.
   PosePrior smoothed(const FrontendParams& params) const;
 
-  /// Puts that into the keyframe's tie, in place of what it had from motion. Nothing is changed if
-  /// no scan has followed.
-  void tighten(const FrontendParams& params, MapState& map) const;
+  /// Puts that into the keyframe's tie, in place of what it had from motion.
+  void tighten(const FrontendParams& params, MapState& map);
 
  private:
   friend struct StateAccess;  // checkpoints
@@ -48,7 +47,7 @@ class OpenPassage {
   int keyframe_;
   double timestamp_;
   MotionState first_from_body_;
-  Matrix6d tied_;
+  PosePrior tied_;
   std::vector<LaterPose> later_;
 };
 

@@ -63,8 +63,11 @@ class Mapper {
   FrameResult begin(ScanFeatures scan, const std::optional<Eigen::Isometry3d>& odom_from_body);
   std::optional<ExpectedBeginning> expectedBeginning(
       const ScanFeatures& scan, const std::optional<Eigen::Isometry3d>& odom_from_body) const;
-  void addKeyframe(ScanFeatures scan, const MatchResult& match);
-  /// The keyframe ends a passage if its scan left its pose open.
+  /// Returns the keyframe's id.
+  int insert(ScanFeatures scan, const MatchResult& match);
+  /// Optimizes what is around the newest keyframe, looks for loops, and goes on from there.
+  void settleNewest();
+  /// The keyframe ends a passage if its scan alone leaves its pose open.
   void addTracked(ScanFeatures scan, const TrackResult& track);
   void followPassage(double timestamp, const MatchResult& match);
   void closePassage();
