@@ -125,7 +125,7 @@ TrackResult Tracker::localize(const ScanFeatures& scan, const PosePrior& predict
     const bool expected = &prior == &predicted;
     if ((!expected || (!follows_ && outcome == TrackOutcome::kLocalized)) && !convincing(match))
       outcome = TrackOutcome::kLittleOverlap;
-    if (slidAway(match, predicted, scan, newest) ||
+    if (slidAway(match, outcome, predicted, scan, newest) ||
         (surprised_ && !resumes(match.map_from_body, predicted, scan, newest)))
       outcome = TrackOutcome::kImplausible;
     const bool localized = outcome == TrackOutcome::kLocalized;
@@ -178,11 +178,12 @@ bool Tracker::surprises(const PosePrior& predicted, const ScanFeatures& scan,
 
 /// Little structure beside a bare wall can lead registration off along the wall, and a body that
 /// was carried off may come to a place that looks much the same. What motion calls impossible must
-/// leave little of the scan unexplained, and do no worse than what motion says.
-bool Tracker::slidAway(const MatchResult& match, const PosePrior& predicted,
+/// leave little of the scan unexplained and no direction open, and do no worse than what motion
+/// says.
+bool Tracker::slidAway(const MatchResult& match, TrackOutcome outcome, const PosePrior& predicted,
                        const ScanFeatures& scan, const Keyframe& newest) const {
   if (predicted.squaredSigmas(match.map_from_body) <= kPossible) return false;
-  return match.overlap < params_.frontend.leap_overlap ||
+  return outcome == TrackOutcome::kUnobserved || match.overlap < params_.frontend.leap_overlap ||
          clarity(verified(match.map_from_body, scan, newest, params_),
                  verified(predicted.map_from_body, scan, newest, params_)) <
              -params_.global_alignment.min_slide_clarity;

@@ -101,9 +101,10 @@ class Tracker {
   bool surprises(const PosePrior& predicted, const ScanFeatures& scan,
                  const Keyframe& newest) const;
   /// Whether registration left a likely pose for an impossible one that explains little of the
-  /// scan, or clearly less: alike says nothing, as the two may be millimetres apart.
-  bool slidAway(const MatchResult& match, const PosePrior& predicted, const ScanFeatures& scan,
-                const Keyframe& newest) const;
+  /// scan or leaves a direction open, or agrees clearly less: alike says nothing, as the two may be
+  /// millimetres apart.
+  bool slidAway(const MatchResult& match, TrackOutcome outcome, const PosePrior& predicted,
+                const ScanFeatures& scan, const Keyframe& newest) const;
   /// Whether a body that surprised before is back on its way.
   bool resumes(const Eigen::Isometry3d& map_from_body, const PosePrior& predicted,
                const ScanFeatures& scan, const Keyframe& newest) const;
