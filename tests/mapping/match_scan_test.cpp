@@ -204,6 +204,31 @@ TEST(MatchScan, DoesNotSlideAlongAWallToSuitALandmarkThatIsSlightlyOff) {
   }
 }
 
+TEST(MatchScan, APriorCountsAgainstWhatTheScanSaysThatItFixes) {
+  // A prior as certain as the scan makes itself known to be, one to two sigmas off, moves the pose
+  // half the way.
+  test::Random random(9);
+  for (std::uint64_t seed = 0; seed < 20; ++seed) {
+    const bool with_landmarks = seed % 2 == 0;
+    const ScanAndMap both =
+        seeTwice(test::furnishedRoom(seed), seed, with_landmarks, options(0.003));
+    PosePrior prior;
+    prior.map_from_body = both.map_from_body;
+    prior.information = 1e-6 * Matrix6d::Identity();
+    const MatchResult alone = matchScan(both.scan, both.map, prior, RegistrationParams{});
+    const Eigen::SelfAdjointEigenSolver<Matrix6d> eigen(alone.information);
+    const Vector6d off =
+        1.5 * eigen.operatorInverseSqrt() *
+        Vector6d((Vector6d() << random.unitVector(), random.unitVector()).finished());
+    prior.map_from_body = retract(alone.map_from_body, off);
+    prior.information = alone.information;
+    const MatchResult result = matchScan(both.scan, both.map, prior, RegistrationParams{});
+    const Vector6d moved = difference(alone.map_from_body, result.map_from_body);
+    const double share = off.dot(alone.information * moved) / off.dot(alone.information * off);
+    EXPECT_NEAR(share, 0.5, 0.15) << "seed " << seed;
+  }
+}
+
 TEST(MatchScan, EmptyScanOrMapKeepsThePrior) {
   const ScanAndMap both = seeTwice(test::furnishedRoom(1), 1, false, options(0.0));
   test::Random random(4);

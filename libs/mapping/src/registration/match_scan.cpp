@@ -42,8 +42,10 @@ class Matcher {
     // All surfaces weigh alike until the basin is found, so that one that moved does not win by its
     // many points; then each point counts, for precision.
     weighting_ = Weighting::kBySurface;
-    for (std::size_t level = firstLevel(); level > 0; --level) approach(level);
+    const std::size_t first = firstLevel();
+    for (std::size_t level = first; level > 0; --level) approach(level);
     iterate(map_.fine(), params_.max_iterations, kFirstAnnealing);
+    if (first > 0) compareWithFineOnly();
     associatePlanes(points_, pose_, map_, params_, planes_);
     weighting_ = Weighting::kByPoint;
     result.converged = iterate(map_.fine(), params_.max_iterations, 0.0);
@@ -78,6 +80,16 @@ class Matcher {
     if (agreementWith(map_.levels()[level - 1]) < agreement) pose_ = start;
   }
 
+  /// Coarse surfels may lead away from a prior that was better than it knew: the finest alone, from
+  /// there, must not agree more.
+  void compareWithFineOnly() {
+    const Eigen::Isometry3d found = pose_;
+    const double agreement = agreementWith(map_.fine());
+    pose_ = prior_.map_from_body;
+    iterate(map_.fine(), params_.max_iterations, kFirstAnnealing);
+    if (agreementWith(map_.fine()) <= agreement) pose_ = found;
+  }
+
   /// Robust weights of the points' matches, as the first step on `surfels` will have them; sum.
   double agreementWith(const SurfelMap& surfels) const {
     double agreement = 0.0;
@@ -91,8 +103,7 @@ class Matcher {
     double annealing = first_annealing * surfels.voxelSize();
     const double noise_floor = 1e-3 * surfels.voxelSize();
     for (int k = 0; k < max_iterations; ++k) {
-      const NormalEquations equations = assemble(surfels, annealing);
-      const Vector6d step = solve(equations);
+      const Vector6d step = stepOn(surfels, annealing);
       pose_ = retract(pose_, step);
       const bool small = step.head<3>().norm() < params_.rotation_tolerance &&
                          step.tail<3>().norm() < params_.translation_tolerance;
@@ -102,14 +113,18 @@ class Matcher {
     return false;
   }
 
-  NormalEquations assemble(const SurfelMap& surfels, double annealing) const {
-    Residuals residuals;
+  /// Each point says where the scan moves; how much that counts against the prior is what the scan
+  /// will be said to fix (`report`).
+  Vector6d stepOn(const SurfelMap& surfels, double annealing) const {
+    Residuals residuals, independent;
     const double extra_variance = extraVariance(surfels, annealing);
-    addPoints(surfels, extra_variance, residuals);
+    addPoints(surfels, extra_variance, residuals, independent);
     for (const ScanPlane& plane : planes_) {
-      if (plane.landmark >= 0) addPlane(plane, extra_variance, residuals);
+      if (plane.landmark < 0) continue;
+      addPlane(plane, extra_variance, residuals);
+      addPlane(plane, extra_variance, independent);
     }
-    return equationsOf(residuals);
+    return solve(equationsOf(residuals), withoutNormalNoise(equationsOf(independent)));
   }
 
   /// Points on one surfel share its error, and a coarse one has more of them: together they say no
@@ -123,10 +138,14 @@ class Matcher {
                                params_.landmark_normal_noise * params_.landmark_normal_noise);
   }
 
-  void addPoints(const SurfelMap& surfels, double extra_variance, Residuals& residuals) const {
+  /// \param independent gets what points say given all of their surface, but for those of landmark
+  /// planes, which have their samples
+  void addPoints(const SurfelMap& surfels, double extra_variance, Residuals& residuals,
+                 Residuals& independent) const {
     forEachMatch(surfels, extra_variance, [&](const ScanPoint& p, const PointMatch& match) {
-      const double worth = weighting_ == Weighting::kBySurface ? p.worth : 1.0;
-      residuals.addPoint(match, worth * match.kernel / match.variance);
+      const double weight = match.kernel / match.variance;
+      residuals.addPoint(match, weighting_ == Weighting::kBySurface ? p.worth * weight : weight);
+      if (!onLandmark(p)) independent.addPoint(match, p.worth * weight);
     });
   }
 
@@ -157,9 +176,9 @@ class Matcher {
   /// What the scan really fixes moves as it says; the rest is left to the prior, which pulls (ω, v)
   /// toward difference(pose, prior). Its Jacobian is taken as the identity, exact for translation
   /// and to second order in the rotation left to go. Else the pose would slide along a bare wall
-  /// wherever the noise of its surfels leads.
-  Vector6d solve(const NormalEquations& equations) const {
-    const Matrix6d observed = withoutNormalNoise(equations);
+  /// wherever the noise of its surfels leads. \param equations say where the scan moves; \param
+  /// observed how much that counts
+  Vector6d solve(const NormalEquations& equations, const Matrix6d& observed) const {
     const Vector6d of_scan = solveDamped(equations.hessian, equations.gradient);
     const Vector6d of_prior = difference(pose_, prior_.map_from_body);
     return solveDamped(observed + prior_.information,
