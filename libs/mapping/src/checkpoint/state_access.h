@@ -56,8 +56,7 @@ struct StateAccess {
     bool is_open = passage.has_value();
     archive(is_open);
     if (!is_open) return;
-    if constexpr (Archive::is_loading::value)
-      passage.emplace(0, 0.0, MotionState(), PosePrior());
+    if constexpr (Archive::is_loading::value) passage.emplace(0, 0.0, MotionState(), PosePrior());
     archive(passage->keyframe_, passage->timestamp_, passage->first_from_body_, passage->tied_);
     std::size_t count = passage->later_.size();
     archive(count);
