@@ -9,6 +9,9 @@
 #include <Eigen/LU>
 
 #include <algorithm>
+#include <array>
+#include <map>
+#include <set>
 #include <utility>
 
 namespace opp::mapping {
@@ -47,66 +50,82 @@ void addPlaneFactors(int id, const SensorModel& sensor, MapState& map) {
   }
 }
 
-void addObservations(int id, MapState& map) {
-  const std::vector<int>& landmarks = map.keyframes[static_cast<std::size_t>(id)].landmark_of_plane;
-  for (std::size_t p = 0; p < landmarks.size(); ++p) {
-    map.landmarks.planes[static_cast<std::size_t>(landmarks[p])].observations.push_back(
-        {id, static_cast<int>(p)});
+/// Makes what follows from which landmark each plane of a keyframe is. Knows what is there already:
+/// a search through all of it for each pair would make `relink` quadratic.
+class Linker {
+ public:
+  explicit Linker(MapState& map) : map_(map) {
+    for (const auto& f : map.factors.orthogonalities) orthogonal_.insert(f.landmarks);
+    for (const auto& f : map.factors.parallelisms) parallel_.insert(f.landmarks);
+    auto& corners = map.landmarks.corners;
+    for (std::size_t c = 0; c < corners.size(); ++c) corner_of_planes_[corners[c].planes] = c;
   }
-}
 
-/// Adds the pair of landmarks unless it is there or is one landmark twice.
-template <typename Factor>
-void addPair(const Keyframe& keyframe, int plane_a, int plane_b, std::vector<Factor>& factors) {
-  std::array<int, 2> pair = {keyframe.landmark_of_plane[static_cast<std::size_t>(plane_a)],
-                             keyframe.landmark_of_plane[static_cast<std::size_t>(plane_b)]};
-  std::sort(pair.begin(), pair.end());
-  const bool known = std::any_of(factors.begin(), factors.end(),
-                                 [&](const Factor& f) { return f.landmarks == pair; });
-  if (!known && pair[0] != pair[1]) factors.push_back({pair});
-}
-
-void addAngles(const Keyframe& keyframe, MapFactors& factors) {
-  const Primitives& primitives = keyframe.features.primitives_in_body;
-  for (const OrthogonalityEdge& edge : primitives.edges) {
-    addPair(keyframe, edge.planes[0], edge.planes[1], factors.orthogonalities);
+  void link(int id) {
+    addObservations(id);
+    addAngles(keyframe(id));
+    addCorners(id);
   }
-  for (const ParallelFamily& family : primitives.families) {
-    // To the largest of the family: planes that are parallel to it are so to each other.
-    const auto area = [&](int p) { return primitives.planes[static_cast<std::size_t>(p)].area; };
-    const int largest = *std::max_element(family.planes.begin(), family.planes.end(),
-                                          [&](int a, int b) { return area(a) < area(b); });
-    for (const int plane : family.planes) addPair(keyframe, largest, plane, factors.parallelisms);
-  }
-}
 
-void addCorners(int id, MapState& map) {
-  const Keyframe& keyframe = map.keyframes[static_cast<std::size_t>(id)];
-  const std::vector<Corner>& corners = keyframe.features.primitives_in_body.corners;
-  for (std::size_t c = 0; c < corners.size(); ++c) {
-    std::array<int, 3> planes{};
-    for (std::size_t k = 0; k < 3; ++k) {
-      planes[k] = keyframe.landmark_of_plane[static_cast<std::size_t>(corners[c].planes[k])];
+ private:
+  using Pair = std::array<int, 2>;
+
+  const Keyframe& keyframe(int id) const { return map_.keyframes[static_cast<std::size_t>(id)]; }
+
+  void addObservations(int id) {
+    const std::vector<int>& landmarks = keyframe(id).landmark_of_plane;
+    for (std::size_t p = 0; p < landmarks.size(); ++p) {
+      map_.landmarks.planes[static_cast<std::size_t>(landmarks[p])].observations.push_back(
+          {id, static_cast<int>(p)});
     }
-    std::sort(planes.begin(), planes.end());
-    if (planes[0] == planes[1] || planes[1] == planes[2]) continue;
-    auto& landmarks = map.landmarks.corners;
-    auto landmark = std::find_if(landmarks.begin(), landmarks.end(),
-                                 [&](const CornerLandmark& l) { return l.planes == planes; });
-    if (landmark == landmarks.end()) {
-      landmark = landmarks.insert(landmarks.end(),
-                                  {planes, keyframe.map_from_body * corners[c].position, {}});
-    }
-    landmark->observations.push_back({id, static_cast<int>(c)});
   }
-}
 
-/// What follows from which landmark each of a keyframe's planes is.
-void link(int id, MapState& map) {
-  addObservations(id, map);
-  addAngles(map.keyframes[static_cast<std::size_t>(id)], map.factors);
-  addCorners(id, map);
-}
+  /// Adds the pair of landmarks unless it is there or is one landmark twice.
+  template <typename Factor>
+  static void addPair(const Keyframe& keyframe, int plane_a, int plane_b, std::set<Pair>& known,
+                      std::vector<Factor>& factors) {
+    Pair pair = {keyframe.landmark_of_plane[static_cast<std::size_t>(plane_a)],
+                 keyframe.landmark_of_plane[static_cast<std::size_t>(plane_b)]};
+    std::sort(pair.begin(), pair.end());
+    if (pair[0] != pair[1] && known.insert(pair).second) factors.push_back({pair});
+  }
+
+  void addAngles(const Keyframe& keyframe) {
+    const Primitives& primitives = keyframe.features.primitives_in_body;
+    for (const OrthogonalityEdge& edge : primitives.edges) {
+      addPair(keyframe, edge.planes[0], edge.planes[1], orthogonal_, map_.factors.orthogonalities);
+    }
+    for (const ParallelFamily& family : primitives.families) {
+      // To the largest of the family: planes that are parallel to it are so to each other.
+      const auto area = [&](int p) { return primitives.planes[static_cast<std::size_t>(p)].area; };
+      const int largest = *std::max_element(family.planes.begin(), family.planes.end(),
+                                            [&](int a, int b) { return area(a) < area(b); });
+      for (const int plane : family.planes)
+        addPair(keyframe, largest, plane, parallel_, map_.factors.parallelisms);
+    }
+  }
+
+  void addCorners(int id) {
+    const std::vector<Corner>& corners = keyframe(id).features.primitives_in_body.corners;
+    for (std::size_t c = 0; c < corners.size(); ++c) {
+      std::array<int, 3> planes{};
+      for (std::size_t k = 0; k < 3; ++k) {
+        planes[k] = keyframe(id).landmark_of_plane[static_cast<std::size_t>(corners[c].planes[k])];
+      }
+      std::sort(planes.begin(), planes.end());
+      if (planes[0] == planes[1] || planes[1] == planes[2]) continue;
+      auto& landmarks = map_.landmarks.corners;
+      const auto [known, is_new] = corner_of_planes_.try_emplace(planes, landmarks.size());
+      if (is_new)
+        landmarks.push_back({planes, keyframe(id).map_from_body * corners[c].position, {}});
+      landmarks[known->second].observations.push_back({id, static_cast<int>(c)});
+    }
+  }
+
+  MapState& map_;
+  std::set<Pair> orthogonal_, parallel_;
+  std::map<std::array<int, 3>, std::size_t> corner_of_planes_;
+};
 
 void addRelativePose(int id, const Matrix6d& point_information, MapState& map) {
   if (id == 0) return;
@@ -126,7 +145,7 @@ int insertKeyframe(ScanFeatures features, const MatchResult& match, const Sensor
   keyframe.landmark_of_plane = assignLandmarks(keyframe, match.planes, map.landmarks);
   map.keyframes.push_back(std::move(keyframe));
   addPlaneFactors(id, sensor, map);
-  link(id, map);
+  Linker(map).link(id);
   addRelativePose(id, match.point_information, map);
   return id;
 }
@@ -141,7 +160,8 @@ void relink(MapState& map) {
   map.factors.orthogonalities.clear();
   map.factors.parallelisms.clear();
   map.landmarks.corners.clear();
-  for (std::size_t k = 0; k < map.keyframes.size(); ++k) link(static_cast<int>(k), map);
+  Linker linker(map);
+  for (std::size_t k = 0; k < map.keyframes.size(); ++k) linker.link(static_cast<int>(k));
 }
 
 void updateCorners(LandmarkMap& landmarks) {
