@@ -124,7 +124,9 @@ class Matcher {
       addPlane(plane, extra_variance, residuals);
       addPlane(plane, extra_variance, independent);
     }
-    return solve(equationsOf(residuals), withoutNormalNoise(equationsOf(independent)));
+    const NormalEquations equations = equationsOf(residuals);
+    const bool by_surface = weighting_ == Weighting::kBySurface;
+    return solve(equations, withoutNormalNoise(by_surface ? equations : equationsOf(independent)));
   }
 
   /// Points on one surfel share its error, and a coarse one has more of them: together they say no
@@ -138,13 +140,17 @@ class Matcher {
                                params_.landmark_normal_noise * params_.landmark_normal_noise);
   }
 
-  /// \param independent gets what points say given all of their surface, but for those of landmark
-  /// planes, which have their samples
+  /// \param independent gets, where each point counts, what it says given all of its surface, but
+  /// for those of landmark planes, which have their samples
   void addPoints(const SurfelMap& surfels, double extra_variance, Residuals& residuals,
                  Residuals& independent) const {
     forEachMatch(surfels, extra_variance, [&](const ScanPoint& p, const PointMatch& match) {
       const double weight = match.kernel / match.variance;
-      residuals.addPoint(match, weighting_ == Weighting::kBySurface ? p.worth * weight : weight);
+      if (weighting_ == Weighting::kBySurface) {
+        residuals.addPoint(match, p.worth * weight);
+        return;
+      }
+      residuals.addPoint(match, weight);
       if (!onLandmark(p)) independent.addPoint(match, p.worth * weight);
     });
   }

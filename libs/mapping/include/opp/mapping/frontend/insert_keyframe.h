@@ -19,8 +19,7 @@ int insertKeyframe(ScanFeatures features, const MatchResult& match, const Sensor
 
 /// Makes anew what follows from which landmark each plane of a keyframe is
 /// (`Keyframe::landmark_of_plane`): the landmarks of the plane factors, observations, corner
-/// landmarks, right angles and parallel planes. O(P log P) for P pairs of planes
-/// of all keyframes.
+/// landmarks, right angles and parallel planes. O(P log P) for P pairs of planes of all keyframes.
 void relink(MapState& map);
 
 /// Puts each corner landmark where its three plane landmarks now meet; to be called after their
