@@ -58,6 +58,16 @@ TEST(EvaluateScript, MapsAndDetectsAndKeepsTheOrderOfRowsWithSeveralJobs) {
   EXPECT_EQ(rows[2].at("name"), "blank robot");
 }
 
+TEST(EvaluateScript, SimulatesRandomFlats) {
+  const test::TempFolder output;
+  const auto rows = rowsOf(
+      output, {"--build", kBuild, "--frames", "1", "--flats", "2:3", "--only", "simulate flat"}, 0);
+  ASSERT_EQ(rows.size(), 2u);
+  EXPECT_EQ(rows[0].at("name"), "flat 2");
+  EXPECT_EQ(rows[1].at("name"), "flat 3");
+  for (const auto& row : rows) EXPECT_GE(row.at("planes"), 1) << row;
+}
+
 TEST(EvaluateScript, ProgramsThatAreMissingMakeRowsThatSaySo) {
   const test::TempFolder output;
   const test::TempFolder empty;
