@@ -148,6 +148,29 @@ void append(MapPart other, MapPart& part) {
   part.indexFrom(static_cast<std::size_t>(joint));
 }
 
+TEST(JoinParts, MotionTellsWhichOfTwoRoomsThatAreAlikeItIs) {
+  // The first part saw two rooms of one kind 10 m apart; the second begins in the first of them, as
+  // motion expects, or so vaguely that only what is seen could tell.
+  const test::Rectangles room = test::furnishedRoom(1);
+  for (const double sigma : {0.2, 20.0}) {
+    std::vector<MapPart> parts = {partOf(room, 0, 0, 32), partOf(room, 1, 40, 32)};
+    append(partOf(room, 0, 200, 32), parts[0]);
+    ExpectedBeginning beginning;
+    beginning.last = {0, 31};
+    beginning.first = {0, 40};
+    beginning.last_from_first = poseAt(31).inverse() * poseAt(40);
+    beginning.information = Matrix6d::Identity() / (sigma * sigma);
+    parts[1].history.beginnings = {beginning};
+    joinParts(parts, MapperParams());
+    ASSERT_EQ(parts.size(), sigma < 1.0 ? 1U : 2U) << sigma;
+    if (parts.size() == 2) continue;
+    const LocalizedScan& last = parts[0].map.scans.back();
+    const Eigen::Isometry3d expected =
+        poseAt(0).inverse() * poseAt(static_cast<int>(last.scan_index));
+    EXPECT_LT(difference(poseOf(parts[0].map, last), expected).norm(), 0.01);
+  }
+}
+
 TEST(JoinParts, ClaimsThatMotionDeniesTogetherNeedTwiceAsManyKeyframes) {
   const test::Rectangles room = test::furnishedRoom(1), other = test::furnishedRoom(4);
   // The second part sees the one room, the third the other. From the one to the other the body went

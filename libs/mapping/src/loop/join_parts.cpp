@@ -119,7 +119,8 @@ class Joiner {
     claims_.erase(std::remove_if(claims_.begin(), claims_.end(), unwanted), claims_.end());
   }
 
-  /// Drops what motion denies, and then all claims about places that have others like them.
+  /// Drops what motion denies, and then all claims about places that have others like them, but for
+  /// those where motion tells which of them it is.
   void dropRefuted() {
     std::map<std::pair<Index, Index>, MotionBetween> motions;
     drop([&](const PartClaim& c) {
@@ -130,6 +131,7 @@ class Joiner {
     });
     const double reach = params_.loop.search_distance;
     drop([&](const PartClaim& c) {
+      if (motions.at({c.a, c.b}).expects(c.claim.map_a_from_map_b)) return false;
       return parts_[c.a].seesRepeated(c.claim.keyframe_a, reach) ||
              parts_[c.b].seesRepeated(c.claim.keyframe_b, reach);
     });
