@@ -5,6 +5,7 @@
 #include "opp/geometry/constants.h"
 #include "opp/mapping/registration/plane_samples.h"
 
+#include "registration/observability.h"
 #include "support/random.h"
 #include "support/synthetic_features.h"
 
@@ -147,6 +148,75 @@ TEST(MatchScan, ASingleWallFixesThreeDirectionsAndThePriorTheRest) {
   EXPECT_NEAR(error[5], 0.01, 1e-3);
   const Eigen::SelfAdjointEigenSolver<Matrix6d> eigen(result.information);
   EXPECT_LT(eigen.eigenvalues()[2], 1e-6 * eigen.eigenvalues()[3]);
+}
+
+/// Rims of a window of 1 m × 1 m in the wall of the tests above, each side in `per_side` pieces,
+/// with noise across them.
+Rims windowRims(const Eigen::Isometry3d& body_from_map, int per_side, double sigma,
+                test::Random& random) {
+  Rims rims;
+  for (const bool upright : {true, false}) {
+    for (const double side : {-1.0, 1.0}) {
+      const Eigen::Vector3d across = side * Eigen::Vector3d::Unit(upright ? 1 : 2);
+      const Eigen::Vector3d along = Eigen::Vector3d::Unit(upright ? 2 : 1);
+      for (int k = 0; k < per_side; ++k) {
+        const Eigen::Vector3d point = Eigen::Vector3d(2.0, 0.0, 1.3) +
+                                      (0.5 + random.normal(sigma)) * across +
+                                      ((k + 0.5) / per_side - 0.5) * along;
+        rims.points.push_back((body_from_map * point).cast<float>());
+        rims.normals.push_back((body_from_map.linear() * -across).cast<float>());
+        rims.sigmas.push_back(static_cast<float>(sigma));
+      }
+    }
+  }
+  return rims;
+}
+
+TEST(MatchScan, RimsFixWhatABareWallLeavesOpen) {
+  const test::Rectangles wall = {{{2.0, 0.0, 1.3}, {0.0, 0.0, 1.0}, {0.0, 1.5, 0.0}}};
+  for (std::uint64_t seed = 0; seed < 20; ++seed) {
+    test::Random random(seed);
+    ScanAndMap both = seeTwice(wall, seed, true, options(0.002));
+    ScanFeatures rims_alone;
+    rims_alone.rims_in_body = windowRims(Eigen::Isometry3d::Identity(), 20, 0.01, random);
+    both.map.insert(rims_alone, Eigen::Isometry3d::Identity(), {});
+    both.scan.rims_in_body = windowRims(both.map_from_body.inverse(), 20, 0.01, random);
+    PosePrior prior;
+    prior.map_from_body = both.map_from_body;
+    prior.map_from_body.translation() += Eigen::Vector3d(0.0, 0.06, -0.05);
+    prior.information.diagonal() << Eigen::Vector3d::Constant(std::pow(degToRad(3.0), -2)),
+        Eigen::Vector3d::Constant(100.0);
+    const MatchResult result = matchScan(both.scan, both.map, prior, RegistrationParams{});
+    // At the wall, where a turn about its normal and a shift tell apart.
+    const Eigen::Vector3d window(2.0, 0.0, 1.3);
+    const Eigen::Vector3d error =
+        result.map_from_body * (both.map_from_body.inverse() * window) - window;
+    EXPECT_LT(std::abs(error.y()), 0.01) << "seed " << seed;
+    EXPECT_LT(std::abs(error.z()), 0.01) << "seed " << seed;
+    // 10 independent ones of 1 cm at best, a quarter of them on each side.
+    const double sigma = std::sqrt(largestVariance(result.covariance.bottomRightCorner<3, 3>()));
+    EXPECT_GT(sigma, 0.01 / std::sqrt(5.0)) << "seed " << seed;
+    EXPECT_LT(sigma, 0.03) << "seed " << seed;
+    EXPECT_GT(result.overlap, 0.9) << "seed " << seed;
+  }
+}
+
+TEST(MatchScan, RimsCountForLittleWhereSurfacesFixThePose) {
+  for (std::uint64_t seed = 0; seed < 20; ++seed) {
+    test::Random random(seed);
+    ScanAndMap both = seeTwice(test::furnishedRoom(seed), seed, true, options(0.002));
+    const PosePrior prior = perturbed(both.map_from_body, random);
+    const MatchResult without = matchScan(both.scan, both.map, prior, RegistrationParams{});
+    ScanFeatures rims_alone;
+    rims_alone.rims_in_body = windowRims(Eigen::Isometry3d::Identity(), 20, 0.01, random);
+    both.map.insert(rims_alone, Eigen::Isometry3d::Identity(), {});
+    // All rims moved by 2 cm: they are wrong together.
+    both.scan.rims_in_body = windowRims(
+        both.map_from_body.inverse() * Eigen::Translation3d(0.0, 0.02, 0.0), 20, 0.01, random);
+    const MatchResult result = matchScan(both.scan, both.map, prior, RegistrationParams{});
+    const Vector6d moved = difference(without.map_from_body, result.map_from_body);
+    EXPECT_LT(moved.tail<3>().norm(), 0.001) << "seed " << seed;
+  }
 }
 
 TEST(MatchScan, NoiseOnABareWallDoesNotPassForStructure) {

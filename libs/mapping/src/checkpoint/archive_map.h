@@ -22,8 +22,8 @@ namespace opp::mapping {
 
 template <typename Archive>
 void serialize(Archive& archive, ScanFeatures& value) {
-  auto& [timestamp, session, scan_index, cloud_in_body, primitives_in_body] = value;
-  archive(timestamp, session, scan_index, cloud_in_body, primitives_in_body);
+  auto& [timestamp, session, scan_index, cloud_in_body, primitives_in_body, rims_in_body] = value;
+  archive(timestamp, session, scan_index, cloud_in_body, primitives_in_body, rims_in_body);
 }
 
 template <typename Archive>

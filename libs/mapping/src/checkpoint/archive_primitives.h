@@ -54,6 +54,12 @@ void serialize(Archive& archive, OrientedCloud& value) {
 }
 
 template <typename Archive>
+void serialize(Archive& archive, Rims& value) {
+  auto& [points, normals, sigmas] = value;
+  archive(points, normals, sigmas);
+}
+
+template <typename Archive>
 void serialize(Archive& archive, PlanePrimitive& value) {
   auto& [plane, moments, covariance, family, support, area, rms] = value;
   archive(plane, moments, covariance, family, support, area, rms);

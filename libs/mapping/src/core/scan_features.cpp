@@ -15,6 +15,7 @@ ScanFeatures detectFeatures(const PointCloud& cloud_in_body, const PrimitivePara
   ScanSurface surface = makeScanSurface(cloud_in_body, params.sensor, params.sampling);
   features.primitives_in_body = detectPrimitives(surface, params, threads);
   features.cloud_in_body = std::move(surface.samples);
+  features.rims_in_body = findRims(cloud_in_body, params.sensor, params.rims);
   return features;
 }
 

@@ -23,7 +23,7 @@ std::vector<Votes> vote(const std::vector<ScanPoint>& points,
   for (const ScanPoint& p : points) {
     if (p.label < 0) continue;
     const Surfel* surfel =
-        map.fine().closest(pose * p.point_in_body, pose.linear() * p.normal_in_body);
+        map.fine().surfaces.closest(pose * p.point_in_body, pose.linear() * p.normal_in_body);
     if (surfel == nullptr) continue;
     Votes& of_plane = votes[Index(p.label)];
     ++of_plane.matched;

@@ -27,6 +27,17 @@ std::vector<ScanPoint> scanPoints(const ScanFeatures& scan, const SensorModel& s
   return points;
 }
 
+std::vector<ScanPoint> rimPoints(const ScanFeatures& scan, const SensorModel& sensor) {
+  const Rims& rims = scan.rims_in_body;
+  const auto count = static_cast<double>(rims.size());
+  std::vector<ScanPoint> points;
+  for (std::size_t i = 0; i < rims.size(); ++i) {
+    points.push_back({rims.points[i], rims.normals[i], rims.sigmas[i] * rims.sigmas[i], -1,
+                      effectiveCount(count, sensor) / count});
+  }
+  return points;
+}
+
 double rmsRange(const std::vector<ScanPoint>& points) {
   double sum = 0.0;
   for (const ScanPoint& p : points) sum += p.point_in_body.squaredNorm();

@@ -28,6 +28,9 @@ struct ScanPoint {
 std::vector<ScanPoint> scanPoints(const ScanFeatures& scan, const SensorModel& sensor,
                                   std::size_t max_points);
 
+/// The rims of a scan as points; together they are worth what one surface is.
+std::vector<ScanPoint> rimPoints(const ScanFeatures& scan, const SensorModel& sensor);
+
 /// Root mean square distance of the points from the body's origin [m]; 0 if there are none.
 double rmsRange(const std::vector<ScanPoint>& points);
 

@@ -34,6 +34,7 @@ class Matcher {
         params_(params),
         pose_(prior.map_from_body),
         points_(scanPoints(scan, map.sensor(), static_cast<std::size_t>(params.max_points))),
+        rims_(rimPoints(scan, map.sensor())),
         planes_(scanPlanes(scan, map.sensor())),
         range_(rmsRange(points_)) {}
 
@@ -90,20 +91,23 @@ class Matcher {
     if (agreementWith(map_.fine()) <= agreement) pose_ = found;
   }
 
-  /// Robust weights of the points' matches, as the first step on `surfels` will have them; sum.
-  double agreementWith(const SurfelMap& surfels) const {
+  /// Robust weights of the matches of points and rims, as the first step on `level` will have them;
+  /// sum.
+  double agreementWith(const LocalLevel& level) const {
     double agreement = 0.0;
-    forEachMatch(surfels, extraVariance(surfels, kFirstAnnealing * surfels.voxelSize()),
-                 [&](const ScanPoint&, const PointMatch& match) { agreement += match.kernel; });
+    const auto add = [&](const ScanPoint&, const PointMatch& match) { agreement += match.kernel; };
+    const double extra_variance = extraVariance(level, kFirstAnnealing * level.voxelSize());
+    forEachMatch(level, extra_variance, add);
+    forEachRim(level, extra_variance, add);
     return agreement;
   }
 
   /// Runs until the steps are small; false if that took more than `max_iterations`.
-  bool iterate(const SurfelMap& surfels, int max_iterations, double first_annealing) {
-    double annealing = first_annealing * surfels.voxelSize();
-    const double noise_floor = 1e-3 * surfels.voxelSize();
+  bool iterate(const LocalLevel& level, int max_iterations, double first_annealing) {
+    double annealing = first_annealing * level.voxelSize();
+    const double noise_floor = 1e-3 * level.voxelSize();
     for (int k = 0; k < max_iterations; ++k) {
-      const Vector6d step = stepOn(surfels, annealing);
+      const Vector6d step = stepOn(level, annealing);
       pose_ = retract(pose_, step);
       const bool small = step.head<3>().norm() < params_.rotation_tolerance &&
                          step.tail<3>().norm() < params_.translation_tolerance;
@@ -115,10 +119,11 @@ class Matcher {
 
   /// Each point says where the scan moves; how much that counts against the prior is what the scan
   /// will be said to fix (`report`).
-  Vector6d stepOn(const SurfelMap& surfels, double annealing) const {
+  Vector6d stepOn(const LocalLevel& level, double annealing) const {
     Residuals residuals, independent;
-    const double extra_variance = extraVariance(surfels, annealing);
-    addPoints(surfels, extra_variance, residuals, independent);
+    const double extra_variance = extraVariance(level, annealing);
+    addPoints(level, extra_variance, residuals, independent);
+    addRims(level, extra_variance, residuals, independent);
     for (const ScanPlane& plane : planes_) {
       if (plane.landmark < 0) continue;
       addPlane(plane, extra_variance, residuals);
@@ -131,20 +136,21 @@ class Matcher {
 
   /// Points on one surfel share its error, and a coarse one has more of them: together they say no
   /// more than one of the finest would, or they would lead astray a pose that the prior knows.
-  double extraVariance(const SurfelMap& surfels, double annealing) const {
-    return std::pow(surfels.voxelSize() / map_.fine().voxelSize() * annealing, 2);
+  double extraVariance(const LocalLevel& level, double annealing) const {
+    return std::pow(level.voxelSize() / map_.fine().voxelSize() * annealing, 2);
   }
 
   NormalEquations equationsOf(const Residuals& residuals) const {
     return residuals.equations(map_.normalVariance(),
-                               params_.landmark_normal_noise * params_.landmark_normal_noise);
+                               params_.landmark_normal_noise * params_.landmark_normal_noise,
+                               params_.rim_normal_noise * params_.rim_normal_noise);
   }
 
   /// \param independent gets, where each point counts, what it says given all of its surface, but
   /// for those of landmark planes, which have their samples
-  void addPoints(const SurfelMap& surfels, double extra_variance, Residuals& residuals,
+  void addPoints(const LocalLevel& level, double extra_variance, Residuals& residuals,
                  Residuals& independent) const {
-    forEachMatch(surfels, extra_variance, [&](const ScanPoint& p, const PointMatch& match) {
+    forEachMatch(level, extra_variance, [&](const ScanPoint& p, const PointMatch& match) {
       const double weight = match.kernel / match.variance;
       if (weighting_ == Weighting::kBySurface) {
         residuals.addPoint(match, p.worth * weight);
@@ -152,6 +158,16 @@ class Matcher {
       }
       residuals.addPoint(match, weight);
       if (!onLandmark(p)) independent.addPoint(match, p.worth * weight);
+    });
+  }
+
+  void addRims(const LocalLevel& level, double extra_variance, Residuals& residuals,
+               Residuals& independent) const {
+    const bool by_surface = weighting_ == Weighting::kBySurface;
+    forEachRim(level, extra_variance, [&](const ScanPoint& p, const PointMatch& match) {
+      const double weight = match.kernel / match.variance;
+      residuals.addRim(match, by_surface ? p.worth * weight : weight);
+      if (!by_surface) independent.addRim(match, p.worth * weight);
     });
   }
 
@@ -174,9 +190,21 @@ class Matcher {
   }
 
   template <typename F>
-  void forEachMatch(const SurfelMap& surfels, double extra_variance, F&& f) const {
-    forEachPointMatch(points_, pose_, surfels, map_.landmarkPlanes(),
+  void forEachMatch(const LocalLevel& level, double extra_variance, F&& f) const {
+    forEachPointMatch(points_, pose_, level.surfaces, map_.landmarkPlanes(),
                       {params_.kernel_width, extra_variance}, f);
+  }
+
+  template <typename F>
+  void forEachRim(const LocalLevel& level, double extra_variance, F&& f) const {
+    forEachPointMatch(rims_, pose_, level.rims, {}, {params_.kernel_width, extra_variance}, f);
+  }
+
+  /// What the rims tell, given that they share a part of their error.
+  void addRimsTo(Residuals& residuals) const {
+    forEachRim(map_.fine(), 0.0, [&](const ScanPoint& p, const PointMatch& match) {
+      residuals.addRim(match, p.worth * match.kernel / match.variance);
+    });
   }
 
   /// What the scan really fixes moves as it says; the rest is left to the prior, which pulls (ω, v)
@@ -204,13 +232,14 @@ class Matcher {
     return withoutNoise(equations.hessian, kNoiseCaution * equations.noise, range_);
   }
 
-  /// What the points fix. \param worthOf weight of a point, 0: left out
+  /// What the points and rims fix. \param worthOf weight of a point, 0: left out
   template <typename F>
   Matrix6d observedByPoints(F&& worthOf) const {
     Residuals residuals;
     forEachMatch(map_.fine(), 0.0, [&](const ScanPoint& p, const PointMatch& match) {
       residuals.addPoint(match, worthOf(p) * match.kernel / match.variance);
     });
+    addRimsTo(residuals);
     return withoutNormalNoise(equationsOf(residuals));
   }
 
@@ -226,6 +255,7 @@ class Matcher {
     forEachMatch(map_.fine(), 0.0, [&](const ScanPoint& p, const PointMatch& match) {
       if (!onLandmark(p)) residuals.addPoint(match, p.worth * match.kernel / match.variance);
     });
+    addRimsTo(residuals);
     result.information = withoutNormalNoise(equationsOf(residuals));
     result.covariance = covarianceOf(result.information + prior_.information);
     double squared_distance = 0.0, agreeing = 0.0;
@@ -255,7 +285,7 @@ class Matcher {
   const PosePrior& prior_;
   const RegistrationParams& params_;
   Eigen::Isometry3d pose_;
-  std::vector<ScanPoint> points_;
+  std::vector<ScanPoint> points_, rims_;
   std::vector<ScanPlane> planes_;
   double range_;  ///< of the points, root mean square [m]
   Weighting weighting_ = Weighting::kBySurface;

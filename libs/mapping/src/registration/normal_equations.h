@@ -25,15 +25,19 @@ class Residuals {
     NormalNoise& noise = match.landmark < 0 ? of_surfels_ : of_landmarks_;
     add(match.arm, 1.0, match.normal, match.residual, weight, noise);
   }
+  void addRim(const PointMatch& match, double weight) {
+    add(match.arm, 1.0, match.normal, match.residual, weight, of_rims_);
+  }
   /// \param scaled_arm, scale see ScanPlane
   void addPlane(const Eigen::Vector3d& scaled_arm, double scale, const Eigen::Vector3d& normal,
                 double residual, double weight) {
     add(scaled_arm, scale, normal, residual, weight, of_landmarks_);
   }
-  NormalEquations equations(double surfel_normal_variance, double landmark_normal_variance) const {
+  /// The variances of normals are about either tangent [rad²].
+  NormalEquations equations(double of_surfels, double of_landmarks, double of_rims) const {
     NormalEquations result = sums_;
-    result.noise =
-        surfel_normal_variance * of_surfels_.sum() + landmark_normal_variance * of_landmarks_.sum();
+    result.noise = of_surfels * of_surfels_.sum() + of_landmarks * of_landmarks_.sum() +
+                   of_rims * of_rims_.sum();
     return result;
   }
 
@@ -48,7 +52,7 @@ class Residuals {
   }
 
   NormalEquations sums_;
-  NormalNoise of_surfels_, of_landmarks_;
+  NormalNoise of_surfels_, of_landmarks_, of_rims_;
 };
 
 }  // namespace opp::mapping

@@ -4,6 +4,7 @@
 
 #include "opp/cloud/even_sampling.h"
 
+#include "cloud/check_cloud.h"
 #include "cloud/grid_patches.h"
 #include "cloud/main_directions.h"
 #include "cloud/open_cells.h"
@@ -14,24 +15,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <stdexcept>
 #include <utility>
 
 namespace opp {
 namespace {
-
-void check(const PointCloud& cloud) {
-  if (cloud.hasNormals() && cloud.normals.size() != cloud.size()) {
-    throw std::invalid_argument("a cloud needs one normal per point or none");
-  }
-  if (cloud.organized() &&
-      static_cast<std::size_t>(cloud.rows) * static_cast<std::size_t>(cloud.cols) != cloud.size()) {
-    throw std::invalid_argument("an organized cloud needs rows x cols points");
-  }
-  if (!cloud.viewpoint.allFinite()) {
-    throw std::invalid_argument("the viewpoint of a cloud must be finite");
-  }
-}
 
 bool inRange(const Eigen::Vector3f& point, const PointCloud& cloud, const SensorModel& sensor) {
   const double range = (point - cloud.viewpoint).cast<double>().norm();

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "opp/cloud/rim_params.h"
 #include "opp/cloud/sampling_params.h"
 #include "opp/cloud/sensor_model.h"
 #include "opp/detection/voting_params.h"
@@ -21,6 +22,7 @@ struct PrimitiveParams {
   RefinementParams refinement;
   CornerParams corners;
   LineParams lines;
+  RimParams rims;
 
   /// Calls f(section) for each stage, in the order of the stages.
   template <typename Self, typename F>
@@ -32,6 +34,7 @@ struct PrimitiveParams {
     f(p.refinement);
     f(p.corners);
     f(p.lines);
+    f(p.rims);
   }
 };
 

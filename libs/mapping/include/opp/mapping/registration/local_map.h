@@ -12,14 +12,23 @@
 
 namespace opp::mapping {
 
-/// What a scan is registered against: surfels of some keyframes at several resolutions and the
-/// plane landmarks.
+/// What scans saw at one resolution.
+struct LocalLevel {
+  SurfelMap surfaces;
+  SurfelMap rims;  ///< as surfels that face across the rim
+
+  double voxelSize() const { return surfaces.voxelSize(); }
+};
+
+/// What a scan is registered against: surfels and rims of some keyframes at several resolutions and
+/// the plane landmarks.
 class LocalMap {
  public:
   /// An empty map for samples about `spacing` [m] apart.
   LocalMap(double spacing, const SensorModel& sensor, const RegistrationParams& params);
 
-  /// Adds the samples of a scan. `landmark_of_plane[p]` is the landmark of scan plane p (−1: none).
+  /// Adds the samples and rims of a scan. `landmark_of_plane[p]` is the landmark of scan plane p
+  /// (−1: none).
   void insert(const ScanFeatures& scan, const Eigen::Isometry3d& map_from_body,
               const std::vector<int>& landmark_of_plane);
   /// Replaces the landmarks' planes; index = landmark id. All that were inserted need one.
@@ -27,9 +36,9 @@ class LocalMap {
 
   /// Noise of the scans.
   const SensorModel& sensor() const { return sensor_; }
-  const SurfelMap& fine() const { return levels_.front(); }
+  const LocalLevel& fine() const { return levels_.front(); }
   /// Fine to coarse, at least one.
-  const std::vector<SurfelMap>& levels() const { return levels_; }
+  const std::vector<LocalLevel>& levels() const { return levels_; }
   const std::vector<Plane>& landmarkPlanes() const { return landmark_planes_; }
   /// Variance of the fine surfels' normals about either tangent [rad²], from how those on landmarks
   /// scatter; without landmarks what RegistrationParams assume.
@@ -37,7 +46,7 @@ class LocalMap {
 
  private:
   SensorModel sensor_;
-  std::vector<SurfelMap> levels_;
+  std::vector<LocalLevel> levels_;
   std::vector<Plane> landmark_planes_;
   double normal_variance_;
 };

@@ -20,6 +20,7 @@ struct RegistrationParams {
   double normal_gate = degToRad(35.0);
   double normal_noise = degToRad(3.0);
   double landmark_normal_noise = degToRad(0.25);
+  double rim_normal_noise = degToRad(5.0);
   double kernel_width = 2.5;
   int max_iterations = 30;
   double rotation_tolerance = 2e-5;
@@ -44,6 +45,8 @@ struct RegistrationParams {
             "normals of surfels scatter so much, until plane landmarks show how much"});
     f(p.landmark_normal_noise, Field{"landmark_normal_noise", "rad", 1e-6, 0.5,
                                      "normals of plane landmarks are off so much"});
+    f(p.rim_normal_noise,
+      Field{"rim_normal_noise", "rad", 1e-4, 0.5, "normals of rims scatter so much"});
     f(p.kernel_width, Field{"kernel_width", "", 0.1, 100.0,
                             "Cauchy kernel: residual in sigmas at which influence peaks"});
     f(p.max_iterations,
