@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace opp::mapping {
@@ -137,7 +138,8 @@ TEST(MotionModel, TellsWhatMotionKnowsSinceAKeyframe) {
 }
 
 TEST(MotionModel, RelativeToTheLastPoseWhatWasOpenBeforeDoesNotCount) {
-  const FrontendParams params;
+  FrontendParams params;
+  params.least_unrest = 1.0;  // the densities below are of a typical body
   const double density = 0.1 * params.acceleration * params.acceleration;
   for (std::uint64_t seed = 1; seed <= 50; ++seed) {
     test::Random random(seed);
@@ -162,6 +164,76 @@ TEST(MotionModel, RelativeToTheLastPoseWhatWasOpenBeforeDoesNotCount) {
                 of_rate * later * later + density * later * later * later / 3.0, 1e-9);
     EXPECT_GT(all.covariance(3, 3), since.covariance(3, 3) + model.state().covariance(3, 3));
   }
+}
+
+/// Poses 0.2 s apart of a body whose velocities change at random by `share` of what a typical
+/// body's do; what `see` says of each pose is known, the rest is as predicted.
+template <typename See>
+MotionModel afterRandomWalk(double share, int steps, const See& see, test::Random& random) {
+  constexpr double kStep = 0.2;
+  const FrontendParams params;
+  MotionModel model(params);
+  Eigen::Isometry3d pose = random.pose(2.0);
+  Vector6d rate;
+  rate << random.vector(0.2), random.vector(0.3);
+  model.start({0.0, pose}, std::nullopt);
+  for (int step = 1; step <= steps; ++step) {
+    // White acceleration of density q: the rate changes by √(q t), the way by half of that at once.
+    Vector6d change;
+    for (int k = 0; k < 6; ++k)
+      change[k] =
+          random.normal(share * (k < 3 ? params.angular_acceleration : params.acceleration) *
+                        std::sqrt(0.1 * kStep));
+    pose = retract(pose, kStep * (rate + 0.5 * change));
+    rate += change;
+    model.update({kStep * step, pose}, std::nullopt, see(step));
+  }
+  return model;
+}
+
+double sigmaAhead(const MotionModel& model, double time, int k) {
+  return sigma(model.predict(time, std::nullopt), k);
+}
+
+TEST(MotionModel, LearnsHowCalmABodyIs) {
+  const auto see_all = [](int) { return exact(); };
+  test::Random random(7);
+  for (const double share : {0.02, 0.1, 0.2, 1.0, 5.0}) {
+    for (int walk = 0; walk < 20; ++walk) {
+      const MotionModel model = afterRandomWalk(share, 100, see_all, random);
+      FrontendParams fixed;
+      fixed.least_unrest = 1.0;
+      MotionModel typical(fixed);
+      typical.start({0.0, Eigen::Isometry3d::Identity()}, std::nullopt);
+      for (int step = 1; step <= 100; ++step)
+        typical.update({0.2 * step, Eigen::Isometry3d::Identity()}, std::nullopt, exact());
+      const double expected = std::clamp(3.0 * share, 0.2, 1.0);  // caution, least and most
+      for (const int k : {0, 3}) {
+        const double learned = sigmaAhead(model, 20.5, k) / sigmaAhead(typical, 20.5, k);
+        EXPECT_GT(learned, 0.5 * expected) << share;  // still above the truth, a third
+        EXPECT_LT(learned, std::min(1.0 + 1e-9, 1.5 * expected)) << share;
+      }
+    }
+  }
+}
+
+TEST(MotionModel, WhatNoScanFixesTeachesNothing) {
+  // A bare wall: two turns and one shift are seen; where the body is along the wall is as
+  // predicted.
+  const auto see_wall = [](int) {
+    Matrix6d seen = Matrix6d::Zero();
+    seen.diagonal() << 0.0, 1e12, 1e12, 1e12, 0.0, 0.0;
+    return seen;
+  };
+  test::Random random(8);
+  const MotionModel model = afterRandomWalk(0.0, 30, see_wall, random);
+  FrontendParams fixed;
+  fixed.least_unrest = 1.0;
+  MotionModel typical(fixed);
+  typical.start({0.0, Eigen::Isometry3d::Identity()}, std::nullopt);
+  for (int step = 1; step <= 30; ++step)
+    typical.update({0.2 * step, Eigen::Isometry3d::Identity()}, std::nullopt, see_wall(step));
+  EXPECT_NEAR(sigmaAhead(model, 6.5, 3), sigmaAhead(typical, 6.5, 3), 1e-9);
 }
 
 TEST(MotionModel, StampsThatDoNotAdvanceGiveFinitePredictions) {

@@ -20,7 +20,7 @@ struct StateAccess {
   static void serialize(Archive& archive, MotionModel& motion) {
     auto& [anchor_time, anchor_odometry, anchor_covariance] = motion.anchor_;
     archive(motion.started_, motion.timestamp_, motion.last_, motion.last_odom_from_body_);
-    archive(anchor_time, anchor_odometry, anchor_covariance);
+    archive(anchor_time, anchor_odometry, anchor_covariance, motion.squared_unrest_);
   }
 
   /// But for the local map.

@@ -5,6 +5,7 @@
 #include "registration/observability.h"
 
 #include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
 
 #include <algorithm>
 #include <cmath>
@@ -20,6 +21,8 @@ Vector6d perKind(double of_rotation, double of_translation) {
 
 /// Stamps that are equal or run backwards must not give infinite velocities.
 constexpr double kMinTimeStep = 1e-3;
+/// A scan tells how far a prediction was off if its own variance is below this share of that.
+constexpr double kTelling = 0.25;
 /// For so long an acceleration stays about the same [s].
 constexpr double kAccelerationTime = 0.1;
 
@@ -60,6 +63,7 @@ void MotionModel::update(const StampedPose& pose,
                          const Matrix6d& information) {
   if (!started_) return start(pose, odom_from_body);
   MotionState state = predictState(pose.timestamp, odom_from_body);
+  if (!odom_from_body) learn(state, pose.map_from_body, information);
   const Matrix6d before = state.covariance.topLeftCorner<6, 6>();
   const Matrix6d before_inverse = inverse(before);
   const Matrix6d after = inverse(before_inverse + information);
@@ -136,8 +140,36 @@ Vector6d MotionModel::odometryVariance(const Eigen::Isometry3d& first_from_secon
 }
 
 Vector6d MotionModel::agility() const {
+  const Eigen::Vector2d share = unrest();
   return kAccelerationTime *
-         perKind(params_.angular_acceleration, params_.acceleration).cwiseAbs2();
+         perKind(share[0] * params_.angular_acceleration, share[1] * params_.acceleration)
+             .cwiseAbs2();
+}
+
+Eigen::Vector2d MotionModel::unrest() const {
+  return (params_.unrest_caution * squared_unrest_.cwiseSqrt())
+      .cwiseMax(params_.least_unrest)
+      .cwiseMin(1.0);
+}
+
+void MotionModel::learn(const MotionState& predicted, const Eigen::Isometry3d& found,
+                        const Matrix6d& information) {
+  const Matrix6d expected = predicted.covariance.topLeftCorner<6, 6>();
+  const Matrix6d measured = covarianceOf(information);
+  const Vector6d error = difference(predicted.map_from_body, found);
+  const Eigen::Vector2d share = unrest();
+  const double weight = 1.0 / params_.unrest_memory;
+  for (const int kind : {0, 1}) {
+    const Eigen::Matrix3d of_prediction = expected.block<3, 3>(3 * kind, 3 * kind);
+    const Eigen::Matrix3d of_scan = measured.block<3, 3>(3 * kind, 3 * kind);
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(of_prediction,
+                                                              Eigen::EigenvaluesOnly);
+    if (largestVariance(of_scan) > kTelling * axes.eigenvalues()[0]) continue;
+    const Eigen::Vector3d off = error.segment<3>(3 * kind);
+    const double squared_sigmas = off.dot((of_prediction + of_scan).ldlt().solve(off)) / 3.0;
+    const double seen = share[kind] * share[kind] * squared_sigmas;
+    squared_unrest_[kind] += weight * (std::min(1.0, seen) - squared_unrest_[kind]);
+  }
 }
 
 PosePrior MotionModel::lastPose(double timestamp) const {

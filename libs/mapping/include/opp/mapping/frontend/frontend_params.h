@@ -14,6 +14,12 @@ struct FrontendParams {
   static constexpr std::string_view kSection = "frontend";
   double acceleration = 1.5;
   double angular_acceleration = 5.0;
+  /// Measured with constant velocities between true poses, in units of the typical accelerations
+  /// (root mean square; most): translation .2 to .9 at 30 Hz and .1 to .3 at 3 Hz in recorded
+  /// sequences held by hand (redwood .9 throughout), .2 (1.6) in simulated ones.
+  double unrest_caution = 3.0;
+  double least_unrest = 0.2;
+  int unrest_memory = 15;
   double speed = 1.0;
   double angular_speed = 1.5;
   double odometry_noise_ratio = 0.05;
@@ -40,6 +46,16 @@ struct FrontendParams {
                             "typical change of speed of the body (standard deviation)"});
     f(p.angular_acceleration,
       Field{"angular_acceleration", "rad/s^2", 1e-3, 1e3, "typical change of turning rate"});
+    f(p.unrest_caution,
+      Field{
+          "unrest_caution", "", 1.0, 100.0,
+          "a body is taken to change its motion so many times as much as it did of late (standard "
+          "deviation), at most as a typical one"});
+    f(p.least_unrest,
+      Field{"least_unrest", "", 0.0, 1.0,
+            "and at least by this share of what a typical one does; 1: as a typical "
+            "one"});
+    f(p.unrest_memory, Field{"unrest_memory", "", 1, 1e6, "scans that make up 'of late'"});
     f(p.speed, Field{"speed", "m/s", 1e-3, 1e3, "typical speed, while no velocity is known"});
     f(p.angular_speed, Field{"angular_speed", "rad/s", 1e-3, 1e3,
                              "typical turning rate, while no velocity is known"});

@@ -33,7 +33,9 @@ MotionState inFrame(const Eigen::Isometry3d& frame_from_map, const MotionState& 
 /// A Kalman filter of pose and velocity in (ω, v), see `retract`: a direction that scans do not fix
 /// grows uncertain from prediction to prediction, until one fixes it again. Velocities change by
 /// random accelerations (white, of the spectral density a²·0.1 s that a body has which changes an
-/// acceleration of deviation a every 0.1 s).
+/// acceleration of deviation a every 0.1 s). How far predictions were off of late tells how much
+/// this body accelerates: at most as a typical one (adaptive estimation from innovations: Mehra,
+/// IEEE Transactions on Automatic Control 15(2), 1970).
 class MotionModel {
  public:
   explicit MotionModel(const FrontendParams& params) : params_(params) {}
@@ -88,6 +90,11 @@ class MotionModel {
   Vector6d odometryVariance(const Eigen::Isometry3d& first_from_second) const;
   /// Spectral density of the accelerations [rad²/s³, m²/s³].
   Vector6d agility() const;
+  /// Accelerations over those of a typical body: of rotation and translation, 0–1.
+  Eigen::Vector2d unrest() const;
+  /// Learns from how far a prediction was off, unless the scan leaves about as much open.
+  void learn(const MotionState& predicted, const Eigen::Isometry3d& found,
+             const Matrix6d& information);
 
   FrontendParams params_;
   bool started_ = false;
@@ -95,6 +102,7 @@ class MotionModel {
   MotionState last_;
   std::optional<Eigen::Isometry3d> last_odom_from_body_;
   Anchor anchor_;
+  Eigen::Vector2d squared_unrest_ = Eigen::Vector2d::Ones();  ///< as seen of late, see unrest()
 };
 
 }  // namespace opp::mapping
