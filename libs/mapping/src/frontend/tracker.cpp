@@ -51,6 +51,19 @@ double positionVariance(const PosePrior& prior) {
   return largestVariance(covariance.bottomRightCorner<3, 3>());
 }
 
+/// Standard deviation, in the finest voxels (and for turns the angles they fill at one metre), of a
+/// prior that keeps registration where it begins.
+constexpr double kNear = 0.2;
+
+/// Whether a scan's samples lie farther apart (root mean square) at two poses than `distance`.
+bool movesBeyond(double distance, const ScanFeatures& scan, const Eigen::Isometry3d& a,
+                 const Eigen::Isometry3d& b) {
+  double sum = 0.0;
+  for (const Eigen::Vector3f& point : scan.cloud_in_body.points)
+    sum += (a * point.cast<double>() - b * point.cast<double>()).squaredNorm();
+  return sum > distance * distance * static_cast<double>(scan.cloud_in_body.size());
+}
+
 /// How a scan fares against the newest keyframe.
 Verification verified(const Eigen::Isometry3d& map_from_body, const ScanFeatures& scan,
                       const Keyframe& newest, const MapperParams& params) {
@@ -119,6 +132,9 @@ TrackResult Tracker::localize(const ScanFeatures& scan, const PosePrior& predict
   TrackResult best;
   const auto better = [&](const PosePrior& prior) {
     MatchResult match = matchScan(scan, *local_map_, prior, params_.registration);
+    if (leaps(match.map_from_body, predicted, scan)) {
+      if (auto near = whereExpected(scan, predicted, newest)) match = std::move(*near);
+    }
     TrackOutcome outcome = outcomeOf(match, scan, moved, newest);
     // What motion does not predict must explain most of the scan: a wrong pose far off can agree
     // with a good part of a map, and with no direction left open.
@@ -143,6 +159,27 @@ TrackResult Tracker::localize(const ScanFeatures& scan, const PosePrior& predict
   if (best.localized()) return best;
   if (const auto start = relocalize(scan, moved, newest)) better(*start);
   return best;
+}
+
+bool Tracker::leaps(const Eigen::Isometry3d& map_from_body, const PosePrior& predicted,
+                    const ScanFeatures& scan) const {
+  return predicted.squaredSigmas(map_from_body) > kClearly &&
+         movesBeyond(local_map_->fine().voxelSize(), scan, predicted.map_from_body, map_from_body);
+}
+
+std::optional<MatchResult> Tracker::whereExpected(const ScanFeatures& scan,
+                                                  const PosePrior& predicted,
+                                                  const Keyframe& newest) const {
+  // So little is left open that the finest surfels are looked for, and none far away.
+  const double reach = kNear * local_map_->fine().voxelSize();
+  PosePrior near;
+  near.map_from_body = predicted.map_from_body;
+  near.information = Matrix6d::Identity() / (reach * reach);
+  MatchResult match = matchScan(scan, *local_map_, near, params_.registration);
+  if (leaps(match.map_from_body, predicted, scan) || contradicts(match.map_from_body, scan, newest))
+    return std::nullopt;
+  match.covariance = covarianceOf(match.information + predicted.information);
+  return match;
 }
 
 bool Tracker::convincing(const MatchResult& match) const {

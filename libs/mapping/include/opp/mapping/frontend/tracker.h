@@ -91,6 +91,14 @@ class Tracker {
                        const Keyframe& newest) const;
   std::optional<PosePrior> relocalize(const ScanFeatures& scan, const PosePrior& last,
                                       const Keyframe& newest) const;
+  /// Whether motion clearly speaks against a pose that is not even near where it expects the body.
+  bool leaps(const Eigen::Isometry3d& map_from_body, const PosePrior& predicted,
+             const ScanFeatures& scan) const;
+  /// The scan registered near where motion expects it; nothing if something contradicts that. What
+  /// is new in a scan may resemble what is known (the next corner of a room the last one), and that
+  /// the scan agrees less where it is expected is no reason to leap.
+  std::optional<MatchResult> whereExpected(const ScanFeatures& scan, const PosePrior& predicted,
+                                           const Keyframe& newest) const;
   bool guides(const PosePrior& predicted) const;
   bool convincing(const MatchResult& match) const;
   TrackOutcome outcomeOf(const MatchResult& match, const ScanFeatures& scan, const PosePrior& moved,
