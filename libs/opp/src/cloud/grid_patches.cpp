@@ -10,6 +10,11 @@
 namespace opp {
 namespace {
 
+/// Noise takes points of surfaces near the end of the sensor's range beyond it, and the mean of
+/// those left is nearer than their surface: so many standard deviations before the end by less than
+/// 1 % of one.
+constexpr double kTruncationSigmas = 3.0;
+
 struct RangeGate {
   Eigen::Vector3f viewpoint;
   float min_squared;
@@ -126,6 +131,11 @@ GridPatches makeGridPatches(const PointCloud& cloud, const SensorModel& sensor,
   grid.block_cols = shape.cols;
   grid.columns_wrap = cloud.columns_wrap;
   grid.patches.origin = roughCenter(cloud, gate);
+  const double farthest = sensor.max_range - kTruncationSigmas * sensor.sigma(sensor.max_range);
+  const Eigen::Vector3d viewpoint = cloud.viewpoint.cast<double>() - grid.patches.origin;
+  const auto rangeOf = [&](const MomentSums& sums) {
+    return (sums.segment<3>(1).matrix() / sums[0] - viewpoint).norm();
+  };
   grid.patches.pixel_angle = std::min(angles.row, angles.col);
   grid.patches.solid_angle = angles.row * angles.col;
   grid.patches.reserve(static_cast<std::size_t>(grid.rows) * static_cast<std::size_t>(grid.cols));
@@ -134,9 +144,9 @@ GridPatches makeGridPatches(const PointCloud& cloud, const SensorModel& sensor,
       const MomentSums sums = blockSums(cloud, gate, grid.patches.origin, r * shape.rows,
                                         std::min(cloud.rows, (r + 1) * shape.rows), c * shape.cols,
                                         std::min(cloud.cols, (c + 1) * shape.cols));
-      const bool empty = sums[0] == 0.0;
-      grid.patch_of_block.push_back(empty ? -1 : static_cast<int>(grid.patches.size()));
-      if (empty) continue;
+      const bool left_out = sums[0] == 0.0 || rangeOf(sums) > farthest;
+      grid.patch_of_block.push_back(left_out ? -1 : static_cast<int>(grid.patches.size()));
+      if (left_out) continue;
       grid.block_of_patch.push_back(r * grid.cols + c);
       grid.patches.add(sums);
     }

@@ -24,7 +24,8 @@ struct GridPatches {
   int cellRows() const { return std::max(1, block_rows / 2); }
   int cellCols() const { return std::max(1, block_cols / 2); }
   bool columns_wrap = false;
-  std::vector<int> patch_of_block;  ///< [row * cols + col]; −1: no point in it
+  /// [row * cols + col]; −1: no point in it, or too far away
+  std::vector<int> patch_of_block;
   std::vector<int> block_of_patch;
 };
 
