@@ -48,8 +48,8 @@ class RimFinder {
 
   Rims find() {
     measureRanges();
-    for (int row = 0; row < cloud_.rows; ++row) walk(row * cloud_.cols, 1, cloud_.cols, 0);
-    for (int col = 0; col < cloud_.cols; ++col) walk(col, cloud_.cols, cloud_.rows, 2);
+    for (int row = 0; row < cloud_.rows; ++row) walk({row * cloud_.cols, 1, cloud_.cols}, 0);
+    for (int col = 0; col < cloud_.cols; ++col) walk({col, cloud_.cols, cloud_.rows}, 2);
     std::sort(pixels_.begin(), pixels_.end(), [](const RimPixel& a, const RimPixel& b) {
       return std::tie(a.group, a.at) < std::tie(b.group, b.at);
     });
@@ -61,6 +61,12 @@ class RimFinder {
   }
 
  private:
+  /// A row or column of the image.
+  struct Line {
+    int begin, stride, count;
+    int at(int k) const { return begin + k * stride; }  ///< index of the point of its k-th pixel
+  };
+
   float range(int at) const { return ranges_[static_cast<std::size_t>(at)]; }
 
   void measureRanges() {
@@ -73,17 +79,16 @@ class RimFinder {
     }
   }
 
-  /// Finds the steps along a row or column of `count` pixels.
-  /// \param side index of the side that lies forward; that backward is the next
-  void walk(int begin, int stride, int count, int side) {
+  /// Finds the steps along a line. \param side index of the side that lies forward; that backward
+  /// is the next
+  void walk(const Line& line, int side) {
     int last = -1;
-    for (int k = 0; k < count; ++k) {
-      const int at = begin + k * stride;
-      if (range(at) == 0.0F) continue;
-      if (last >= 0 && k - last <= params_.max_gap + 1 && steps(begin + last * stride, at)) {
-        const bool forward = range(at) > range(begin + last * stride);
+    for (int k = 0; k < line.count; ++k) {
+      if (range(line.at(k)) == 0.0F) continue;
+      if (last >= 0 && k - last <= params_.max_gap + 1 && steps(line.at(last), line.at(k))) {
+        const bool forward = range(line.at(k)) > range(line.at(last));
         const int front = forward ? last : k, behind = forward ? k : last;
-        addPixel({begin, stride, count}, front, behind, forward ? side : side + 1);
+        addPixel(line, front, behind, forward ? side : side + 1);
       }
       last = k;
     }
@@ -98,11 +103,6 @@ class RimFinder {
         2.0 * (sensor_.noise_constant * sensor_.noise_constant + growing * growing);
     return step * step > params_.step_sigmas * params_.step_sigmas * variance;
   }
-
-  struct Line {
-    int begin, stride, count;
-    int at(int k) const { return begin + k * stride; }
-  };
 
   void addPixel(const Line& line, int front, int behind, int side) {
     const int outward = behind > front ? 1 : -1;

@@ -50,11 +50,11 @@ struct MatchResult {
 /// Registers a scan against a local map, starting at the prior's pose.
 ///
 /// Stages, each a robust Gauss–Newton iteration (Cauchy kernel, annealed): points against surfels
-/// from a level that is as coarse as the prior is uncertain down to the finest (or on the finest
-/// alone, where that agrees more), then plane landmarks through the moments of the scan's planes
-/// (four numbers a plane for all its samples, exact) together with the points that are on no such
-/// plane. An empty scan or map gives overlap 0 and the prior's pose. Deterministic. Cost:
-/// O(max_points + samples + planes) per step.
+/// (and rims against rims) from a level that is as coarse as the prior is uncertain down to the
+/// finest (or on the finest alone, where that agrees more), then plane landmarks through the
+/// moments of the scan's planes (four numbers a plane for all its samples, exact) together with the
+/// points that are on no such plane. An empty scan or map gives overlap 0 and the prior's pose.
+/// Deterministic. Cost: O(max_points + samples + rims + planes) per step.
 MatchResult matchScan(const ScanFeatures& scan, const LocalMap& map, const PosePrior& prior,
                       const RegistrationParams& params);
 
