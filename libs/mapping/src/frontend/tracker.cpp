@@ -130,10 +130,12 @@ TrackResult Tracker::track(const ScanFeatures& scan,
 TrackResult Tracker::localize(const ScanFeatures& scan, const PosePrior& predicted,
                               const PosePrior& moved, const Keyframe& newest) const {
   TrackResult best;
+  std::optional<std::optional<MatchResult>> near;  // see whereExpected; asked for once, if at all
   const auto better = [&](const PosePrior& prior) {
     MatchResult match = matchScan(scan, *local_map_, prior, params_.registration);
     if (leaps(match.map_from_body, predicted, scan)) {
-      if (auto near = whereExpected(scan, predicted, newest)) match = std::move(*near);
+      if (!near) near = whereExpected(scan, predicted, newest);
+      if (*near) match = **near;
     }
     TrackOutcome outcome = outcomeOf(match, scan, moved, newest);
     // What motion does not predict must explain most of the scan: a wrong pose far off can agree
