@@ -191,22 +191,29 @@ MotionModel afterRandomWalk(double share, int steps, const See& see, test::Rando
   return model;
 }
 
+/// A body at rest, seen so, that is taken to be a typical one whatever it does.
+template <typename See>
+MotionModel afterTypicalRest(int steps, const See& see) {
+  FrontendParams params;
+  params.least_unrest = 1.0;
+  MotionModel model(params);
+  model.start({0.0, Eigen::Isometry3d::Identity()}, std::nullopt);
+  for (int step = 1; step <= steps; ++step)
+    model.update({0.2 * step, Eigen::Isometry3d::Identity()}, std::nullopt, see(step));
+  return model;
+}
+
 double sigmaAhead(const MotionModel& model, double time, int k) {
   return sigma(model.predict(time, std::nullopt), k);
 }
 
 TEST(MotionModel, LearnsHowCalmABodyIs) {
   const auto see_all = [](int) { return exact(); };
+  const MotionModel typical = afterTypicalRest(100, see_all);
   test::Random random(7);
   for (const double share : {0.02, 0.1, 0.2, 1.0, 5.0}) {
     for (int walk = 0; walk < 20; ++walk) {
       const MotionModel model = afterRandomWalk(share, 100, see_all, random);
-      FrontendParams fixed;
-      fixed.least_unrest = 1.0;
-      MotionModel typical(fixed);
-      typical.start({0.0, Eigen::Isometry3d::Identity()}, std::nullopt);
-      for (int step = 1; step <= 100; ++step)
-        typical.update({0.2 * step, Eigen::Isometry3d::Identity()}, std::nullopt, exact());
       const double expected = std::clamp(3.0 * share, 0.2, 1.0);  // caution, least and most
       for (const int k : {0, 3}) {
         const double learned = sigmaAhead(model, 20.5, k) / sigmaAhead(typical, 20.5, k);
@@ -227,12 +234,7 @@ TEST(MotionModel, WhatNoScanFixesTeachesNothing) {
   };
   test::Random random(8);
   const MotionModel model = afterRandomWalk(0.0, 30, see_wall, random);
-  FrontendParams fixed;
-  fixed.least_unrest = 1.0;
-  MotionModel typical(fixed);
-  typical.start({0.0, Eigen::Isometry3d::Identity()}, std::nullopt);
-  for (int step = 1; step <= 30; ++step)
-    typical.update({0.2 * step, Eigen::Isometry3d::Identity()}, std::nullopt, see_wall(step));
+  const MotionModel typical = afterTypicalRest(30, see_wall);
   EXPECT_NEAR(sigmaAhead(model, 6.5, 3), sigmaAhead(typical, 6.5, 3), 1e-9);
 }
 
