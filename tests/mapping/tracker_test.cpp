@@ -30,14 +30,19 @@ struct Started {
   Tracker tracker{MapperParams()};
 };
 
-Started startAt(std::uint64_t room, const Eigen::Isometry3d& pose) {
+Started startWith(ScanFeatures scan, const Eigen::Isometry3d& pose,
+                  const std::optional<Eigen::Isometry3d>& odometry = std::nullopt) {
   Started started;
   MatchResult match;
   match.map_from_body = pose;
-  insertKeyframe(test::scanOfRoom(room, 0, pose), match, SensorModel(), started.map);
-  started.tracker.start({0.0, pose}, std::nullopt);
+  insertKeyframe(std::move(scan), match, SensorModel(), started.map);
+  started.tracker.start({0.0, pose}, odometry);
   started.tracker.setLocalMap(localMapOf(started.map, {0}, MapperParams()));
   return started;
+}
+
+Started startAt(std::uint64_t room, const Eigen::Isometry3d& pose) {
+  return startWith(test::scanOfRoom(room, 0, pose), pose);
 }
 
 TEST(Tracker, WithoutAMapNothingIsLocalized) {
@@ -164,13 +169,7 @@ Eigen::Isometry3d beside(double y) {
 }
 
 Started startAtWall(const std::optional<Eigen::Isometry3d>& odometry) {
-  Started started;
-  MatchResult match;
-  match.map_from_body = beside(0.0);
-  insertKeyframe(wallFrom(0.0, 0.0), match, SensorModel(), started.map);
-  started.tracker.start({0.0, beside(0.0)}, odometry);
-  started.tracker.setLocalMap(localMapOf(started.map, {0}, MapperParams()));
-  return started;
+  return startWith(wallFrom(0.0, 0.0), beside(0.0), odometry);
 }
 
 TEST(Tracker, ABareWallEndsInLostWithoutOdometry) {
@@ -212,12 +211,7 @@ TEST(Tracker, FollowsABodyPastABareWallAndFindsTheWayOn) {
     scan.timestamp = kTimeStep * step;
     return scan;
   };
-  Started started;
-  MatchResult match;
-  match.map_from_body = poseAfter(0);
-  insertKeyframe(see({wall, floor, side}, 0), match, SensorModel(), started.map);
-  started.tracker.start({0.0, poseAfter(0)}, std::nullopt);
-  started.tracker.setLocalMap(localMapOf(started.map, {0}, MapperParams()));
+  Started started = startWith(see({wall, floor, side}, 0), poseAfter(0));
   int unobserved = 0;
   for (int step = 1; step <= 15; ++step) {
     const bool bare = step > 4 && step < 13;
@@ -246,6 +240,41 @@ TEST(Tracker, OncePositionIsForgottenNothingIsLookedFor) {
   later.timestamp = 30.0;
   EXPECT_EQ(started.tracker.track(later, std::nullopt, started.map).outcome,
             TrackOutcome::kForgotten);
+}
+
+/// After so long from rest a hand may hold a camera the other way round [s].
+constexpr double kHalfTurn = 0.8;
+
+TEST(Tracker, WhereMotionAllowsAHalfTurnAnAlignmentWithoutRivalsTellsThePose) {
+  int found = 0;
+  for (std::uint64_t room = 0; room < 20; ++room) {
+    Started started = startAt(room, poseAt(0.0, 0.0));
+    const Eigen::Isometry3d truth = poseAt(2.0, 0.3);
+    ScanFeatures scan = test::scanOfRoom(room, 1, truth);
+    scan.timestamp = kHalfTurn;
+    const TrackResult result = started.tracker.track(scan, std::nullopt, started.map);
+    if (!result.localized()) continue;  // nothing is invented
+    ++found;
+    EXPECT_LT(difference(truth, result.match.map_from_body).norm(), 0.01) << "room " << room;
+  }
+  EXPECT_GE(found, 18);
+}
+
+TEST(Tracker, WhereMotionAllowsAHalfTurnARoomThatIsTheSameThenTellsNothing) {
+  const test::Rectangles room = test::roomSides({-2.0, -1.5, 0.0}, {2.0, 1.5, 2.5});
+  const auto seeFrom = [&](const Eigen::Isometry3d& pose, std::uint64_t seed) {
+    test::SyntheticOptions options;
+    options.spacing = 0.08;
+    options.sigma = 0.003;
+    options.seed = seed;
+    return test::trueFeatures(test::sampleScene(room, pose.translation(), pose.inverse(), options));
+  };
+  for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+    Started started = startWith(seeFrom(poseAt(0.0, 0.0), 100 + seed), poseAt(0.0, 0.0));
+    ScanFeatures scan = seeFrom(poseAt(0.3, 0.2), seed);
+    scan.timestamp = kHalfTurn;
+    EXPECT_FALSE(started.tracker.track(scan, std::nullopt, started.map).localized()) << seed;
+  }
 }
 
 TEST(Tracker, OdometryCarriesABareWall) {

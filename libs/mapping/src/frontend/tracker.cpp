@@ -76,11 +76,10 @@ Verification verified(const Eigen::Isometry3d& map_from_body, const ScanFeatures
 
 }  // namespace
 
-/// Whether a prediction says enough to look for the body in the same map: repeating rooms and
-/// symmetric halls offer other places.
+/// Whether a prediction says enough to look for the body in the same map: rooms repeat.
 bool Tracker::guides(const PosePrior& predicted) const {
   const double farthest = params_.frontend.max_gap * params_.frontend.speed;
-  return excludesHalfTurn(predicted) && positionVariance(predicted) <= farthest * farthest;
+  return positionVariance(predicted) <= farthest * farthest;
 }
 
 TrackResult Tracker::track(const ScanFeatures& scan,
@@ -153,13 +152,22 @@ TrackResult Tracker::localize(const ScanFeatures& scan, const PosePrior& predict
     best.outcome = outcome;
     best.match = std::move(match);
   };
+  const auto relocalized = [&] {
+    if (const auto start = relocalize(scan, moved, newest)) better(*start);
+    return best.localized();
+  };
+  // One scan cannot tell a rectangular hall from the same hall turned around: where motion does not
+  // either, only an alignment without rivals can.
+  if (!excludesHalfTurn(predicted)) {
+    if (!relocalized()) best.outcome = TrackOutcome::kForgotten;
+    return best;
+  }
   // Repeating rooms: what is likely and not contradicted goes before what agrees a little more.
   better(predicted);
   // What is open with a prediction is so without.
   if (best.localized() || best.outcome == TrackOutcome::kUnobserved) return best;
   better(moved);
-  if (best.localized()) return best;
-  if (const auto start = relocalize(scan, moved, newest)) better(*start);
+  if (!best.localized()) relocalized();
   return best;
 }
 
