@@ -62,7 +62,8 @@ bool closeOne(const Sets& sets, const MapperParams& params, MapState& map) {
     if (agreed.empty()) continue;
     const double conflict =
         conflictOf(membersOf(map, sets, between.first), membersOf(map, sets, between.second),
-                   agreed.front().map_a_from_map_b, params);
+                   agreed.front().map_a_from_map_b, params)
+            .value_or(1.0);
     if (conflict > params.global_alignment.max_conflict) continue;
     if (acceptClaims(agreed, params, map) > 0) return true;
   }

@@ -12,6 +12,7 @@
 #include "opp/mapping/loop/place.h"
 
 #include "loop/choose_keyframes.h"
+#include "loop/fits_another_way.h"
 
 #include <algorithm>
 #include <map>
@@ -139,7 +140,8 @@ class Joiner {
 
   bool conflicts(const SharedClaim& agreement) const {
     return conflictOf(viewsOf(parts_[agreement.a].map), viewsOf(parts_[agreement.b].map),
-                      agreement.a_from_b(), params_) > params_.global_alignment.max_conflict;
+                      agreement.a_from_b(), params_)
+               .value_or(1.0) > params_.global_alignment.max_conflict;
   }
 
   /// What enough keyframes claim of two parts: fewer where motion says the same.
@@ -195,6 +197,11 @@ class Joiner {
       const SharedClaim& first = all.front();
       if (conflicts(first)) {
         for (const PlaceClaim& claim : first.claims) refute({first.a, first.b, claim});
+        continue;
+      }
+      if (fitsAnotherWay(parts_[first.a].map, parts_[first.b].map, first.claims,
+                         MotionBetween(parts_, first.a, first.b, params_), params_)) {
+        drop([&](const PartClaim& c) { return first.isAbout(c); });
         continue;
       }
       const auto rival = std::find_if(all.begin() + 1, all.end(), [&](const SharedClaim& other) {

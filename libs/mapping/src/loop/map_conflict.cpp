@@ -35,8 +35,8 @@ KeyframeViews viewsOf(const MapState& map) {
   return views;
 }
 
-double conflictOf(const KeyframeViews& a, const KeyframeViews& b, const Eigen::Isometry3d& a_from_b,
-                  const MapperParams& params) {
+std::optional<double> conflictOf(const KeyframeViews& a, const KeyframeViews& b,
+                                 const Eigen::Isometry3d& a_from_b, const MapperParams& params) {
   const std::size_t step = std::max<std::size_t>(1, b.size() / kComparedKeyframes);
   int agreeing = 0, conflicting = 0;
   for (std::size_t k = 0; k < b.size(); k += step) {
@@ -56,7 +56,8 @@ double conflictOf(const KeyframeViews& a, const KeyframeViews& b, const Eigen::I
     }
   }
   const int both = agreeing + conflicting;
-  return both == 0 ? 1.0 : static_cast<double>(conflicting) / both;
+  if (both == 0) return std::nullopt;
+  return static_cast<double>(conflicting) / both;
 }
 
 }  // namespace opp::mapping

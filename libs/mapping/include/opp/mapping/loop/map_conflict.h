@@ -5,6 +5,7 @@
 #include "opp/mapping/core/map_state.h"
 #include "opp/mapping/core/mapper_params.h"
 
+#include <optional>
 #include <vector>
 
 namespace opp::mapping {
@@ -17,8 +18,8 @@ KeyframeViews viewsOf(const MapState& map);
 
 /// How much keyframes of two maps (or of two parts of one) contradict each other if `a_from_b` is
 /// right: of the samples of keyframes with a common view, conflicts with free space over agreements
-/// and conflicts; 1 if there is no common view. Some of b, spread evenly, are looked at.
-double conflictOf(const KeyframeViews& a, const KeyframeViews& b, const Eigen::Isometry3d& a_from_b,
-                  const MapperParams& params);
+/// and conflicts; nothing if there is no common view. Some of b, spread evenly, are looked at.
+std::optional<double> conflictOf(const KeyframeViews& a, const KeyframeViews& b,
+                                 const Eigen::Isometry3d& a_from_b, const MapperParams& params);
 
 }  // namespace opp::mapping
