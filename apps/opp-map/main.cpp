@@ -83,7 +83,7 @@ void buildMap(const MapOptions& options, Checkpointer& checkpoints, MappingRun& 
     opp::mapping::mapRawlog(options.rawlogs[run.sessions_read], input, options.params.primitives,
                             after_scan, run);
   }
-  opp::mapping::finishMapping(run);
+  opp::mapping::finishMapping(run, options.threads);
   tryCheckpoint(progress, [&] { checkpoints.save(run); });
   progress.finish();
   for (const std::string& warning : run.report.warnings) progress.log("warning: " + warning);

@@ -212,6 +212,23 @@ TEST(JoinParts, AShortPartJoinsALongOneWhicheverCameFirst) {
   }
 }
 
+TEST(JoinParts, JoinsAlikeForEveryNumberOfThreads) {
+  const test::Rectangles room = test::furnishedRoom(3);
+  const std::vector<MapPart> parts = {partOf(room, 0, 0), partOf(room, 1, 40)};
+  std::vector<MapPart> alone = parts;
+  joinParts(alone, MapperParams());
+  ASSERT_EQ(alone.size(), 1U);
+  for (const int threads : {2, 5}) {
+    std::vector<MapPart> together = parts;
+    joinParts(together, MapperParams(), threads);
+    ASSERT_EQ(together.size(), 1U);
+    for (std::size_t k = 0; k < alone[0].map.keyframes.size(); ++k) {
+      EXPECT_EQ(together[0].map.keyframes[k].map_from_body.matrix(),
+                alone[0].map.keyframes[k].map_from_body.matrix());
+    }
+  }
+}
+
 TEST(JoinParts, DoesNotCompareWhatWasTakenAsunder) {
   const test::Rectangles room = test::furnishedRoom(1);
   std::vector<MapPart> parts = {partOf(room, 0, 0), partOf(room, 1, 40)};

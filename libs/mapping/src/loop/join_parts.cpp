@@ -10,6 +10,7 @@
 #include "opp/mapping/loop/match_place.h"
 #include "opp/mapping/loop/motion_between.h"
 #include "opp/mapping/loop/place.h"
+#include "opp/parallel/parallel_for.h"
 
 #include "loop/choose_keyframes.h"
 #include "loop/fits_another_way.h"
@@ -46,11 +47,16 @@ class Joiner {
   Joiner(std::vector<MapPart>& parts, const MapperParams& params)
       : parts_(parts), params_(params) {}
 
-  void run() {
+  void run(int threads) {
+    std::vector<std::pair<Index, int>> claimants;
     for (Index p = 0; p < parts_.size(); ++p) {
       const int keyframes = static_cast<int>(parts_[p].map.keyframes.size());
-      for (int k = 0; k < keyframes; k += claimantStep(keyframes)) look(p, k);
+      for (int k = 0; k < keyframes; k += claimantStep(keyframes)) claimants.emplace_back(p, k);
     }
+    std::vector<std::vector<PartClaim>> claims(claimants.size());
+    parallelFor(claimants.size(), threads,
+                [&](Index i) { claims[i] = claimsOf(claimants[i].first, claimants[i].second); });
+    for (const auto& some : claims) claims_.insert(claims_.end(), some.begin(), some.end());
     while (joinBest()) {
     }
   }
@@ -86,12 +92,13 @@ class Joiner {
     return parts_[c.part].map.keyframes[Index(c.keyframe)].viewCentre();
   }
 
-  /// One keyframe claims what it can.
-  void look(Index part, int keyframe) {
+  /// What one keyframe claims.
+  std::vector<PartClaim> claimsOf(Index part, int keyframe) const {
     const MapState& own = parts_[part].map;
     const ScanFeatures& scan = own.keyframes[Index(keyframe)].features;
     const std::vector<Candidate> places = candidates(part, scan.primitives_in_body);
-    if (places.empty()) return;
+    if (places.empty()) return {};
+    std::vector<PartClaim> claims;
     const Place own_place =
         placeOf(own, keyframe, connectedViews(own, keyframe, params_.loop.place_keyframes, params_),
                 params_);
@@ -103,10 +110,11 @@ class Joiner {
       PlaceClaim claim = claimOf(other, *match, own, keyframe);
       claim.clarity = match->clarity;
       if (c.part < part)
-        claims_.push_back({c.part, part, claim});
+        claims.push_back({c.part, part, claim});
       else
-        claims_.push_back({part, c.part, seenFromOther(claim)});
+        claims.push_back({part, c.part, seenFromOther(claim)});
     }
+    return claims;
   }
 
   /// The place was recognized where it cannot be.
@@ -264,8 +272,8 @@ class Joiner {
 
 }  // namespace
 
-void joinParts(std::vector<MapPart>& parts, const MapperParams& params) {
-  if (params.loop.join_maps && parts.size() > 1) Joiner(parts, params).run();
+void joinParts(std::vector<MapPart>& parts, const MapperParams& params, int threads) {
+  if (params.loop.join_maps && parts.size() > 1) Joiner(parts, params).run(threads);
 }
 
 }  // namespace opp::mapping

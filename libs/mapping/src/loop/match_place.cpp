@@ -91,10 +91,10 @@ std::optional<PlaceMatch> matchPlace(const MapState& map, int keyframe, const Sc
                                      const std::optional<PosePrior>& expected,
                                      const MapperParams& params) {
   const std::vector<int> place = connectedViews(map, keyframe, params.loop.place_keyframes, params);
-  const LocalMap local = localMapOf(map, place, params);
   const Place merged = placeOf(map, keyframe, place, params);
   if (expected) {
-    const MatchResult match = matchScan(scan, local, *expected, params.registration);
+    const MatchResult match =
+        matchScan(scan, localMapOf(map, place, params), *expected, params.registration);
     if (match.overlap >= params.loop.min_overlap &&
         !contradicts(merged, scan, keyframeOf(map, keyframe), match, params)) {
       PlaceMatch result = describe(map, keyframe, match);
@@ -107,7 +107,7 @@ std::optional<PlaceMatch> matchPlace(const MapState& map, int keyframe, const Sc
   const GlobalAlignment alignment = alignGlobally(
       merged.input(), surroundings, params.primitives.sensor, params.global_alignment);
   if (alignment.outcome != AlignmentOutcome::kAligned) return std::nullopt;
-  return refined(map, keyframe, scan, local, alignment, params);
+  return refined(map, keyframe, scan, localMapOf(map, place, params), alignment, params);
 }
 
 PlaceClaim claimOf(const MapState& map_a, const PlaceMatch& match, const MapState& map_b,

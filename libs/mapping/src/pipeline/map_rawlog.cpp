@@ -129,9 +129,9 @@ void mapRawlog(const std::filesystem::path& rawlog, const MapRawlogOptions& opti
   ++run.sessions_read;
 }
 
-void finishMapping(MappingRun& run) {
+void finishMapping(MappingRun& run, int threads) {
   const Clock::time_point start = Clock::now();
-  run.mapper.finish();
+  run.mapper.finish(threads);
   run.report.seconds["optimization"] += secondsSince(start);
   int id = 0;
   for (SessionReport& session : run.report.sessions) {

@@ -193,14 +193,14 @@ void Mapper::splitParts() {
   parts_ = std::move(parts);
 }
 
-void Mapper::finish() {
+void Mapper::finish(int threads) {
   closePassage();
   for (MapPart& part : parts_) {
     if (levelTies(maxOpenVariance(), params_, part.map)) settleMap(part.map, 1, params_);
   }
   local_.clear();  // of keyframes that others join now
   splitParts();
-  joinParts(parts_, params_);
+  joinParts(parts_, params_, threads);
   if (tieParts(parts_)) splitParts();
   for (MapPart& part : parts_) {
     settleMap(part.map, 1, params_);

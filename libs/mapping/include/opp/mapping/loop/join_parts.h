@@ -19,7 +19,8 @@ namespace opp::mapping {
 /// (PartHistory::repeated). What more keyframes claim is joined first, and what it denies is
 /// dropped: had parts been joined as the map grew, a look-alike seen early would have kept out the
 /// truth that came later. What is not proven stays apart. The older of two parts keeps its frame,
-/// id and place among `parts`. O(keyframes of all parts) alignments.
-void joinParts(std::vector<MapPart>& parts, const MapperParams& params);
+/// id and place among `parts`. Same result for every `threads`. O(keyframes of all parts)
+/// alignments.
+void joinParts(std::vector<MapPart>& parts, const MapperParams& params, int threads = 1);
 
 }  // namespace opp::mapping

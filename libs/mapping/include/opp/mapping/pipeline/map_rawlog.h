@@ -33,6 +33,6 @@ void mapRawlog(const std::filesystem::path& rawlog, const MapRawlogOptions& opti
 
 /// Finishes the mapper and completes the report: what became of each session's scans, and a warning
 /// for each that is not wholly in the map. To be called once, after the last session.
-void finishMapping(MappingRun& run);
+void finishMapping(MappingRun& run, int threads = 1);
 
 }  // namespace opp::mapping
