@@ -32,7 +32,8 @@ void mapRawlog(const std::filesystem::path& rawlog, const MapRawlogOptions& opti
                const PrimitiveParams& params, const ProgressCallback& progress, MappingRun& run);
 
 /// Finishes the mapper and completes the report: what became of each session's scans, and a warning
-/// for each that is not wholly in the map. To be called once, after the last session.
+/// for each that is not wholly in the map. To be called once, after the last session. `threads`
+/// <= 0: all cores; no influence on the result.
 void finishMapping(MappingRun& run, int threads = 1);
 
 }  // namespace opp::mapping
