@@ -152,22 +152,19 @@ TrackResult Tracker::localize(const ScanFeatures& scan, const PosePrior& predict
     best.outcome = outcome;
     best.match = std::move(match);
   };
-  const auto relocalized = [&] {
-    if (const auto start = relocalize(scan, moved, newest)) better(*start);
-    return best.localized();
-  };
   // One scan cannot tell a rectangular hall from the same hall turned around: where motion does not
   // either, only an alignment without rivals can.
-  if (!excludesHalfTurn(predicted)) {
-    if (!relocalized()) best.outcome = TrackOutcome::kForgotten;
-    return best;
+  const bool guided = excludesHalfTurn(predicted);
+  if (guided) {
+    // Repeating rooms: what is likely and not contradicted goes before what agrees a little more.
+    better(predicted);
+    // What is open with a prediction is so without.
+    if (best.localized() || best.outcome == TrackOutcome::kUnobserved) return best;
+    better(moved);
+    if (best.localized()) return best;
   }
-  // Repeating rooms: what is likely and not contradicted goes before what agrees a little more.
-  better(predicted);
-  // What is open with a prediction is so without.
-  if (best.localized() || best.outcome == TrackOutcome::kUnobserved) return best;
-  better(moved);
-  if (!best.localized()) relocalized();
+  if (const auto start = relocalize(scan, moved, newest)) better(*start);
+  if (!guided && !best.localized()) best.outcome = TrackOutcome::kForgotten;
   return best;
 }
 

@@ -92,9 +92,10 @@ std::optional<PlaceMatch> matchPlace(const MapState& map, int keyframe, const Sc
                                      const MapperParams& params) {
   const std::vector<int> place = connectedViews(map, keyframe, params.loop.place_keyframes, params);
   const Place merged = placeOf(map, keyframe, place, params);
+  std::optional<LocalMap> local;  // most candidates need none
   if (expected) {
-    const MatchResult match =
-        matchScan(scan, localMapOf(map, place, params), *expected, params.registration);
+    local = localMapOf(map, place, params);
+    const MatchResult match = matchScan(scan, *local, *expected, params.registration);
     if (match.overlap >= params.loop.min_overlap &&
         !contradicts(merged, scan, keyframeOf(map, keyframe), match, params)) {
       PlaceMatch result = describe(map, keyframe, match);
@@ -107,7 +108,8 @@ std::optional<PlaceMatch> matchPlace(const MapState& map, int keyframe, const Sc
   const GlobalAlignment alignment = alignGlobally(
       merged.input(), surroundings, params.primitives.sensor, params.global_alignment);
   if (alignment.outcome != AlignmentOutcome::kAligned) return std::nullopt;
-  return refined(map, keyframe, scan, localMapOf(map, place, params), alignment, params);
+  if (!local) local = localMapOf(map, place, params);
+  return refined(map, keyframe, scan, *local, alignment, params);
 }
 
 PlaceClaim claimOf(const MapState& map_a, const PlaceMatch& match, const MapState& map_b,
