@@ -18,27 +18,38 @@ struct Sequence {
   double max_error;  ///< [m] root mean square: what registration to a model reaches, with some room
 };
 
+using Json = nlohmann::json;
+
+/// Maps every so many-th scan of a sequence into `folder / "map"`; the report of its session.
+Json mapSequence(const std::string& name, const std::string& config, const char* every,
+                 const test::TempFolder& folder) {
+  const test::CommandResult map = test::runApp(
+      "opp-map",
+      {"-i", test::sharedData(name + ".rawlog").string(), "-o", (folder / "map").string(), "-c",
+       OPP_SOURCE_FOLDER "/config/" + config, "--every", every, "--no-octomap", "--quiet"});
+  EXPECT_EQ(map.exit_code, 0) << map;
+  return Json::parse(test::readFile(folder / "map/run.json")).at("sessions").at(0);
+}
+
+/// Error of the trajectory in `folder / "map"` [m].
+Json errorOf(const std::string& truth, const test::TempFolder& folder) {
+  const test::CommandResult eval =
+      test::runApp("opp-eval", {"--gt", test::sharedData(truth).string(), "--est",
+                                (folder / "map/trajectory.tum").string(), "--json"});
+  EXPECT_EQ(eval.exit_code, 0) << eval;
+  return Json::parse(eval.out).at("trajectory").at("ate").at("translation_m");
+}
+
 class RecordedSequence : public testing::TestWithParam<Sequence> {};
 
 TEST_P(RecordedSequence, AllFramesThatAreUsedAreLocalized) {
   OPP_SKIP_WITHOUT_SHARED_DATA();
   const test::TempFolder folder;
-  const auto file = [&](const char* extension) {
-    return test::sharedData(std::string(GetParam().name) + extension).string();
-  };
-  const test::CommandResult map =
-      test::runApp("opp-map", {"-i", file(".rawlog"), "-o", (folder / "map").string(), "-c",
-                               std::string(OPP_SOURCE_FOLDER "/config/") + GetParam().config,
-                               "--every", GetParam().every, "--no-octomap", "--quiet"});
-  ASSERT_EQ(map.exit_code, 0) << map;
-  const auto report = nlohmann::json::parse(test::readFile(folder / "map/run.json"));
-  EXPECT_EQ(report.at("sessions").at(0).at("frames_lost"), 0);
-  const test::CommandResult eval =
-      test::runApp("opp-eval", {"--gt", file(GetParam().truth), "--est",
-                                (folder / "map/trajectory.tum").string(), "--json"});
-  ASSERT_EQ(eval.exit_code, 0) << eval;
-  const auto error = nlohmann::json::parse(eval.out).at("trajectory");
-  EXPECT_LT(error.at("ate").at("translation_m").at("rmse"), GetParam().max_error);
+  const Sequence& sequence = GetParam();
+  const Json session = mapSequence(sequence.name, sequence.config, sequence.every, folder);
+  EXPECT_EQ(session.at("frames_lost"), 0);
+  EXPECT_LT(errorOf(std::string(sequence.name) + sequence.truth, folder).at("rmse"),
+            sequence.max_error);
 }
 
 INSTANTIATE_TEST_SUITE_P(
@@ -56,20 +67,9 @@ class HallInStrides : public testing::TestWithParam<const char*> {};
 TEST_P(HallInStrides, NoPoseIsTheWrongWayRound) {
   OPP_SKIP_WITHOUT_SHARED_DATA();
   const test::TempFolder folder;
-  const std::string hall = test::sharedData("simulated_lidar_hall").string();
-  const test::CommandResult map =
-      test::runApp("opp-map", {"-i", hall + ".rawlog", "-o", (folder / "map").string(), "-c",
-                               OPP_SOURCE_FOLDER "/config/lidar.ini", "--every", GetParam(),
-                               "--no-octomap", "--quiet"});
-  ASSERT_EQ(map.exit_code, 0) << map;
-  const std::string report = test::readFile(folder / "map/run.json");
-  if (nlohmann::json::parse(report).at("sessions").at(0).at("frames_used") < 3) return;
-  const test::CommandResult eval = test::runApp(
-      "opp-eval",
-      {"--gt", hall + ".gt.tum", "--est", (folder / "map/trajectory.tum").string(), "--json"});
-  ASSERT_EQ(eval.exit_code, 0) << eval;
-  const auto error = nlohmann::json::parse(eval.out).at("trajectory");
-  EXPECT_LT(error.at("ate").at("translation_m").at("max"), 0.02);
+  const std::string hall = "simulated_lidar_hall";
+  if (mapSequence(hall, "lidar.ini", GetParam(), folder).at("frames_used") < 3) return;
+  EXPECT_LT(errorOf(hall + ".gt.tum", folder).at("max"), 0.02);
 }
 
 INSTANTIATE_TEST_SUITE_P(All, HallInStrides, testing::Values("2", "4", "5", "8"),

@@ -31,13 +31,7 @@ Eigen::Isometry3d poseAt(int step) {
 }
 
 ScanFeatures scanAt(const test::Rectangles& scene, int step) {
-  test::SyntheticOptions options;
-  options.spacing = 0.08;
-  options.sigma = 0.003;
-  options.seed = static_cast<std::uint64_t>(step);
-  ScanFeatures scan = test::trueFeatures(
-      test::sampleScene(scene, poseAt(step).translation(), poseAt(step).inverse(), options));
-  scan.timestamp = 0.1 * step;
+  ScanFeatures scan = test::scanOfScene(scene, step, poseAt(step));
   scan.scan_index = static_cast<std::size_t>(step);
   return scan;
 }
@@ -74,15 +68,19 @@ TEST(JoinParts, JoinsTwoSessionsOfOneRoomWithoutAGuess) {
   EXPECT_GE(joined, 4);
 }
 
+MapPart partWith(const MapState& map, int id) {
+  MapPart part(id, LoopParams());
+  part.map = map;
+  part.indexFrom(0);
+  return part;
+}
+
 /// A map of so many scans from `first` on, as part `id`.
 MapPart partOf(const test::Rectangles& scene, int id, int first, int scans = 16) {
   Mapper mapper{MapperParams()};
   for (int step = first; step < first + scans; ++step)
     mapper.add(scanAt(scene, step), std::nullopt);
-  MapPart part(id, LoopParams());
-  part.map = mapper.map();
-  part.indexFrom(0);
-  return part;
+  return partWith(mapper.map(), id);
 }
 
 TEST(JoinParts, BelievesMotionThatDeniesAJoin) {
@@ -285,9 +283,7 @@ TEST(JoinParts, TwoScansOfASymmetricHallThatLookAlikeMayBeFromOppositePlaces) {
     for (const int p : {0, 1}) {
       Mapper mapper(params);
       mapper.add(scanOfHall(p == 0 ? first : second, p, params), std::nullopt);
-      parts.emplace_back(p, params.loop);
-      parts.back().map = mapper.map();
-      parts.back().indexFrom(0);
+      parts.push_back(partWith(mapper.map(), p));
     }
     joinParts(parts, params);
     EXPECT_EQ(parts.size(), 2U) << trial;

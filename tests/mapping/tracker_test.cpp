@@ -201,15 +201,7 @@ TEST(Tracker, FollowsABodyPastABareWallAndFindsTheWayOn) {
     return pose;
   };
   const auto see = [&](const test::Rectangles& scene, int step) {
-    test::SyntheticOptions options;
-    options.spacing = 0.08;
-    options.sigma = 0.003;
-    options.seed = static_cast<std::uint64_t>(step);
-    const Eigen::Isometry3d pose = poseAfter(step);
-    ScanFeatures scan =
-        test::trueFeatures(test::sampleScene(scene, pose.translation(), pose.inverse(), options));
-    scan.timestamp = kTimeStep * step;
-    return scan;
+    return test::scanOfScene(scene, step, poseAfter(step));
   };
   Started started = startWith(see({wall, floor, side}, 0), poseAfter(0));
   int unobserved = 0;
@@ -262,16 +254,10 @@ TEST(Tracker, WhereMotionAllowsAHalfTurnAnAlignmentWithoutRivalsTellsThePose) {
 
 TEST(Tracker, WhereMotionAllowsAHalfTurnARoomThatIsTheSameThenTellsNothing) {
   const test::Rectangles room = test::roomSides({-2.0, -1.5, 0.0}, {2.0, 1.5, 2.5});
-  const auto seeFrom = [&](const Eigen::Isometry3d& pose, std::uint64_t seed) {
-    test::SyntheticOptions options;
-    options.spacing = 0.08;
-    options.sigma = 0.003;
-    options.seed = seed;
-    return test::trueFeatures(test::sampleScene(room, pose.translation(), pose.inverse(), options));
-  };
-  for (std::uint64_t seed = 1; seed <= 5; ++seed) {
-    Started started = startWith(seeFrom(poseAt(0.0, 0.0), 100 + seed), poseAt(0.0, 0.0));
-    ScanFeatures scan = seeFrom(poseAt(0.3, 0.2), seed);
+  for (int seed = 1; seed <= 5; ++seed) {
+    const Eigen::Isometry3d start = poseAt(0.0, 0.0);
+    Started started = startWith(test::scanOfScene(room, 100 + seed, start), start);
+    ScanFeatures scan = test::scanOfScene(room, seed, poseAt(0.3, 0.2));
     scan.timestamp = kHalfTurn;
     EXPECT_FALSE(started.tracker.track(scan, std::nullopt, started.map).localized()) << seed;
   }

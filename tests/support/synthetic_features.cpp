@@ -146,16 +146,21 @@ mapping::ScanFeatures trueFeatures(const SyntheticScene& scene) {
   return features;
 }
 
-mapping::ScanFeatures scanOfRoom(std::uint64_t room, int step,
-                                 const Eigen::Isometry3d& scene_from_body, double sigma) {
+mapping::ScanFeatures scanOfScene(const Rectangles& scene, int step,
+                                  const Eigen::Isometry3d& scene_from_body, double sigma) {
   SyntheticOptions options;
   options.spacing = 0.08;
   options.sigma = sigma;
   options.seed = static_cast<std::uint64_t>(step);
-  mapping::ScanFeatures scan = trueFeatures(sampleScene(
-      furnishedRoom(room), scene_from_body.translation(), scene_from_body.inverse(), options));
+  mapping::ScanFeatures scan = trueFeatures(
+      sampleScene(scene, scene_from_body.translation(), scene_from_body.inverse(), options));
   scan.timestamp = kTimeStep * step;
   return scan;
+}
+
+mapping::ScanFeatures scanOfRoom(std::uint64_t room, int step,
+                                 const Eigen::Isometry3d& scene_from_body, double sigma) {
+  return scanOfScene(furnishedRoom(room), step, scene_from_body, sigma);
 }
 
 Eigen::Isometry3d poseOnCircle(int step) {

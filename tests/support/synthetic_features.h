@@ -16,9 +16,13 @@ Primitives truePrimitives(const SyntheticScene& scene);
 /// A scan with its cloud and `truePrimitives`.
 mapping::ScanFeatures trueFeatures(const SyntheticScene& scene);
 
-constexpr double kTimeStep = 0.1;  ///< of `scanOfRoom` [s]
+constexpr double kTimeStep = 0.1;  ///< of `scanOfScene` [s]
 
-/// The `step`-th scan of a body in `furnishedRoom(room)`; `sigma`: its noise [m].
+/// The `step`-th scan of a body that sees all around in a scene; `sigma`: its noise [m].
+mapping::ScanFeatures scanOfScene(const Rectangles& scene, int step,
+                                  const Eigen::Isometry3d& scene_from_body, double sigma = 0.003);
+
+/// The same in `furnishedRoom(room)`.
 mapping::ScanFeatures scanOfRoom(std::uint64_t room, int step,
                                  const Eigen::Isometry3d& scene_from_body, double sigma = 0.003);
 
