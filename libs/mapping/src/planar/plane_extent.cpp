@@ -35,6 +35,12 @@ PlaneFrame::PlaneFrame(const Plane& plane, const Eigen::Vector3d& u_hint) : plan
   v_axis_ = normal.cross(u_axis_);
 }
 
+PlaneCell PlaneFrame::cellAt(const Eigen::Vector3d& point, double cell) const {
+  const Eigen::Vector2d at = project(point) / cell;
+  return {static_cast<std::int32_t>(std::floor(at.y())),
+          static_cast<std::int32_t>(std::floor(at.x()))};
+}
+
 PlaneExtent::PlaneExtent(const PlaneFrame& frame, double cell) : frame_(frame), cell_(cell) {
   if (!(cell > 0.0)) throw std::invalid_argument("the cell of a plane's raster must be positive");
 }
@@ -66,18 +72,6 @@ void PlaneExtent::addSightline(const Eigen::Vector3d& viewpoint, const Eigen::Ve
   if (!(at_viewpoint > 0.0 && at_point < -clearance)) return;
   const double part = at_viewpoint / (at_viewpoint - at_point);
   mark(frame_.project(viewpoint + part * (point - viewpoint)), part * footprint, passed_);
-}
-
-void PlaneExtent::merge(const PlaneExtent& other) {
-  const auto move = [&](const std::vector<PlaneCell>& from, std::vector<PlaneCell>& to) {
-    for (const PlaneCell& cell : from) {
-      const Eigen::Vector2d center(cell.column + 0.5, cell.row + 0.5);
-      mark(frame_.project(other.frame_.lift(other.cell_ * center)), other.cell_, to);
-    }
-  };
-  sortUnique(other.passed_);
-  move(other.supportCells(), support_);
-  move(other.passed_, passed_);
 }
 
 std::vector<PlaneCell> PlaneExtent::supportCells() const {

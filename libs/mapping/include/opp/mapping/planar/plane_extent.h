@@ -11,6 +11,24 @@
 
 namespace opp::mapping {
 
+/// Square cell of a raster on a plane: [column, column + 1) × [row, row + 1) cells from the frame's
+/// origin.
+struct PlaneCell {
+  std::int32_t row = 0;
+  std::int32_t column = 0;
+  friend bool operator==(const PlaneCell& a, const PlaneCell& b) {
+    return a.row == b.row && a.column == b.column;
+  }
+  friend bool operator<(const PlaneCell& a, const PlaneCell& b) {
+    return a.row != b.row ? a.row < b.row : a.column < b.column;
+  }
+};
+
+/// Coordinates of a cell's centre, in cells.
+inline Eigen::Vector2d centreOf(const PlaneCell& cell) {
+  return {cell.column + 0.5, cell.row + 0.5};
+}
+
 /// Right-handed coordinates (u, v) on a plane; seen from the normal's side u × v turns
 /// counter-clockwise.
 class PlaneFrame {
@@ -25,6 +43,8 @@ class PlaneFrame {
   Eigen::Vector2d project(const Eigen::Vector3d& point) const {
     return {u_axis_.dot(point), v_axis_.dot(point)};
   }
+  /// Cell of edge `cell` [m] with the point's projection.
+  PlaneCell cellAt(const Eigen::Vector3d& point, double cell) const;
   /// The point of the plane with these coordinates.
   Eigen::Vector3d lift(const Eigen::Vector2d& uv) const {
     return uv.x() * u_axis_ + uv.y() * v_axis_ - plane_.d() * plane_.normal();
@@ -34,19 +54,6 @@ class PlaneFrame {
   Plane plane_;
   Eigen::Vector3d u_axis_;
   Eigen::Vector3d v_axis_;
-};
-
-/// Square cell of a raster on a plane: [column, column + 1) × [row, row + 1) cells from the frame's
-/// origin.
-struct PlaneCell {
-  std::int32_t row = 0;
-  std::int32_t column = 0;
-  friend bool operator==(const PlaneCell& a, const PlaneCell& b) {
-    return a.row == b.row && a.column == b.column;
-  }
-  friend bool operator<(const PlaneCell& a, const PlaneCell& b) {
-    return a.row != b.row ? a.row < b.row : a.column < b.column;
-  }
 };
 
 /// Where a plane was seen and where rays passed through it, over any number of scans. What is added
@@ -63,10 +70,6 @@ class PlaneExtent {
   /// happens unless it crosses the plane and ends more than `clearance` [m] behind it.
   void addSightline(const Eigen::Vector3d& viewpoint, const Eigen::Vector3d& point,
                     double footprint, double clearance);
-
-  /// Adds all that `other` holds, a raster of about the same plane: cell centres are moved to this
-  /// frame.
-  void merge(const PlaneExtent& other);
 
   const PlaneFrame& frame() const { return frame_; }
   double cell() const { return cell_; }
