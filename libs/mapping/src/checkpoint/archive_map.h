@@ -27,9 +27,33 @@ void serialize(Archive& archive, ScanFeatures& value) {
 }
 
 template <typename Archive>
+void serialize(Archive& archive, PlaneCell& value) {
+  auto& [row, column] = value;
+  archive(row, column);
+}
+
+template <typename Archive>
+void serialize(Archive& archive, PlaneView& value) {
+  auto& [keyframe_plane, is_own, seen, raster_plane, support, timestamps] = value;
+  archive(keyframe_plane, is_own, seen, raster_plane, support, timestamps);
+}
+
+template <typename Archive>
+void serialize(Archive& archive, CornerView& value) {
+  auto& [seen, timestamps] = value;
+  archive(seen, timestamps);
+}
+
+template <typename Archive>
+void serialize(Archive& archive, ScanViews& value) {
+  auto& [adopted, planes, edges, lines, corners] = value;
+  archive(adopted, planes, edges, lines, corners);
+}
+
+template <typename Archive>
 void serialize(Archive& archive, Keyframe& value) {
-  auto& [map_from_body, features, landmark_of_plane, view_centre_in_body] = value;
-  archive(map_from_body, features, landmark_of_plane, view_centre_in_body);
+  auto& [map_from_body, features, landmark_of_plane, view_centre_in_body, views] = value;
+  archive(map_from_body, features, landmark_of_plane, view_centre_in_body, views);
 }
 
 template <typename Archive>

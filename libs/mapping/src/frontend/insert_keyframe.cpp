@@ -141,7 +141,7 @@ int insertKeyframe(ScanFeatures features, const MatchResult& match, const Sensor
                    MapState& map) {
   const int id = static_cast<int>(map.keyframes.size());
   const Eigen::Vector3d view_centre = meanPoint(features.cloud_in_body);
-  Keyframe keyframe{match.map_from_body, std::move(features), {}, view_centre};
+  Keyframe keyframe{match.map_from_body, std::move(features), {}, view_centre, {}};
   keyframe.landmark_of_plane = assignLandmarks(keyframe, match.planes, map.landmarks);
   map.keyframes.push_back(std::move(keyframe));
   addPlaneFactors(id, sensor, map);

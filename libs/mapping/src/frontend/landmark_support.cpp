@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 namespace opp::mapping {
@@ -24,6 +25,19 @@ double varianceAt(const Eigen::Vector3d& point, const PointMoments& moments, con
   const Eigen::Vector2d lever = tangents.transpose() * (point - moments.mean());
   const Eigen::Matrix2d known = tangents.transpose() * moments.scatter() * tangents;
   return 1.0 / moments.weight() + lever.dot(known.ldlt().solve(lever));
+}
+
+Plane ownPlane(const LandmarkSupport& part, const Plane& near) {
+  return part.moments.fitPlane(part.moments.mean() + near.normal());
+}
+
+double ownError(const LandmarkSupport& part, const Plane& near) {
+  return part.moments.squaredError(ownPlane(part, near));
+}
+
+/// More noise than expected makes everything less certain. \param apart sum of their own errors
+double unexpectedNoise(const LandmarkSupport& a, const LandmarkSupport& b, double apart) {
+  return std::max(1.0, apart / (a.effective_samples + b.effective_samples));
 }
 
 }  // namespace
@@ -85,19 +99,35 @@ bool fitsDistorted(const LandmarkSupport& part, const Plane& own, const Plane& c
          own.normal().dot(common.normal()) >= std::cos(std::min(tilt, 1.0));
 }
 
+bool faceAlike(const Plane& a, const Plane& b) {
+  constexpr double kSameSide = 0.87;  // cos 30°
+  return a.normal().dot(b.normal()) >= kSameSide;
+}
+
+double commonPlaneExcess(const LandmarkSupport& a, const LandmarkSupport& b, const Plane& common) {
+  constexpr double kPossibleExcess = 16.27;  // of the three numbers of a plane
+  const double apart = ownError(a, common) + ownError(b, common);
+  const double together = a.moments.squaredError(common) + b.moments.squaredError(common);
+  return (together - apart) / (kPossibleExcess * unexpectedNoise(a, b, apart));
+}
+
+double oneSurfaceExcess(const Plane& plane_a, const LandmarkSupport& a, const Plane& plane_b,
+                        const LandmarkSupport& b) {
+  if (!faceAlike(plane_a, plane_b) || !touch(a, b)) return std::numeric_limits<double>::infinity();
+  PointMoments joint = a.moments;
+  joint.merge(b.moments);
+  return commonPlaneExcess(a, b, joint.fitPlane(joint.mean() + plane_a.normal()));
+}
+
 bool coplanar(const LandmarkSupport& a, const LandmarkSupport& b, const Plane& common,
               double resolution) {
-  constexpr double kPossibleExcess = 16.27;  // of the three numbers of a plane
-  double apart = 0.0, together = 0.0, farthest = 0.0;
+  double farthest = 0.0;
   for (const auto& [part, other] : {std::pair{&a, &b}, std::pair{&b, &a}}) {
-    const Plane own = part->moments.fitPlane(part->moments.mean() + common.normal());
-    apart += part->moments.squaredError(own);
-    together += part->moments.squaredError(common);
-    farthest = std::max(farthest, varianceAt(other->moments.mean(), part->moments, own));
+    farthest = std::max(farthest,
+                        varianceAt(other->moments.mean(), part->moments, ownPlane(*part, common)));
   }
-  // More noise than expected makes everything less certain.
-  const double scale = std::max(1.0, apart / (a.effective_samples + b.effective_samples));
-  return together - apart <= kPossibleExcess * scale && farthest * scale <= resolution * resolution;
+  const double noise = unexpectedNoise(a, b, ownError(a, common) + ownError(b, common));
+  return commonPlaneExcess(a, b, common) <= 1.0 && farthest * noise <= resolution * resolution;
 }
 
 bool seenTogether(const LandmarkSupport& a, const LandmarkSupport& b) {

@@ -41,6 +41,18 @@ bool explains(const Plane& plane, const LandmarkSupport& part, const SensorModel
 bool fitsDistorted(const LandmarkSupport& part, const Plane& own, const Plane& common,
                    const SensorModel& sensor, double gate_sigmas);
 
+/// Whether two planes roughly face the same way: surfaces that do not are two.
+bool faceAlike(const Plane& a, const Plane& b);
+
+/// How much more the samples of both scatter about a common plane than each about its own, in units
+/// of what noise explains in 99.9 % of cases (chi-square): above 1, they are two planes.
+double commonPlaneExcess(const LandmarkSupport& a, const LandmarkSupport& b, const Plane& common);
+
+/// The same for two planes that may be parts of one surface: infinite unless they face alike and
+/// touch.
+double oneSurfaceExcess(const Plane& plane_a, const LandmarkSupport& a, const Plane& plane_b,
+                        const LandmarkSupport& b);
+
 /// Whether two landmarks, wherever they lie, are proven to be parts of one plane: their samples
 /// scatter about a common plane no more than about their own (99.9 % point of chi-square), and each
 /// is known so well that it tells where the plane passes at the other's place to within

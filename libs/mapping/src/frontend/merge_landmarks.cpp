@@ -20,13 +20,6 @@ bool mayContinue(const LandmarkSupport& a, const LandmarkSupport& b) {
   return touch(a, b) && !seenTogether(a, b);
 }
 
-void redirect(const std::vector<int>& joined_with, MapState& map) {
-  for (Keyframe& keyframe : map.keyframes) {
-    for (int& landmark : keyframe.landmark_of_plane) landmark = joined_with[Index(landmark)];
-  }
-  relink(map);
-}
-
 /// Joins all pairs, of ids a < b, for which onePlane(a, b, common plane) holds.
 template <typename OnePlane>
 int mergePairs(MapState& map, std::vector<LandmarkSupport>& supports, const OnePlane& onePlane) {
@@ -35,16 +28,13 @@ int mergePairs(MapState& map, std::vector<LandmarkSupport>& supports, const OneP
   int merged = 0;
   for (Index a = 0; a < supports.size(); ++a) {
     for (Index b = a + 1; b < supports.size(); ++b) {
-      // Cheap test first: surfaces that do not even roughly face the same way are two.
-      constexpr double kSameSide = 0.87;  // cos 30°
       PlaneLandmark& older = map.landmarks.planes[a];
-      const Eigen::Vector3d& normal = older.plane_in_map.normal();
       if (supports[a].moments.empty() || supports[b].moments.empty() ||
-          normal.dot(map.landmarks.planes[b].plane_in_map.normal()) < kSameSide)
+          !faceAlike(older.plane_in_map, map.landmarks.planes[b].plane_in_map))
         continue;
       PointMoments joint = supports[a].moments;
       joint.merge(supports[b].moments);
-      const Plane common = joint.fitPlane(joint.mean() + normal);
+      const Plane common = joint.fitPlane(joint.mean() + older.plane_in_map.normal());
       if (!onePlane(a, b, common)) continue;
       joined_with[b] = static_cast<int>(a);  // no chains: nothing joins b any more
       supports[a].merge(supports[b]);
@@ -53,11 +43,18 @@ int mergePairs(MapState& map, std::vector<LandmarkSupport>& supports, const OneP
       ++merged;
     }
   }
-  if (merged > 0) redirect(joined_with, map);
+  if (merged > 0) joinLandmarks(joined_with, map);
   return merged;
 }
 
 }  // namespace
+
+void joinLandmarks(const std::vector<int>& joined_with, MapState& map) {
+  for (Keyframe& keyframe : map.keyframes) {
+    for (int& landmark : keyframe.landmark_of_plane) landmark = joined_with[Index(landmark)];
+  }
+  relink(map);
+}
 
 int mergeLandmarks(MapState& map, double gate_sigmas) {
   std::vector<LandmarkSupport> supports = supportsOf(map);

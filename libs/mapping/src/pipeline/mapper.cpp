@@ -3,8 +3,11 @@
 #include "opp/mapping/pipeline/mapper.h"
 
 #include "opp/mapping/backend/settle_map.h"
+#include "opp/mapping/frontend/add_views.h"
+#include "opp/mapping/frontend/adopt_views.h"
 #include "opp/mapping/frontend/build_local_map.h"
 #include "opp/mapping/frontend/insert_keyframe.h"
+#include "opp/mapping/frontend/merge_covered.h"
 #include "opp/mapping/frontend/merge_landmarks.h"
 #include "opp/mapping/frontend/split_landmarks.h"
 #include "opp/mapping/loop/close_loose_ties.h"
@@ -58,7 +61,7 @@ FrameResult Mapper::add(ScanFeatures scan, const std::optional<Eigen::Isometry3d
   lost_in_a_row_ = 0;
   if (track.localized()) {
     followPassage(scan.timestamp, track.match);
-    if (!track.wants_keyframe) follow(scan, track.match.map_from_body);
+    if (!track.wants_keyframe) follow(scan, track.match);
   } else {
     // A body past a bare wall is followed until it sees again what it knows, or enough of what is
     // new to go on from there: the map knows how loosely the two are tied, see `finish`.
@@ -126,12 +129,15 @@ void Mapper::settleNewest() {
   tracker_.correct(active().keyframes.back().map_from_body);
 }
 
-void Mapper::follow(const ScanFeatures& scan, const Eigen::Isometry3d& map_from_body) {
+void Mapper::follow(const ScanFeatures& scan, const MatchResult& match) {
   MapState& map = active();
-  const Eigen::Isometry3d keyframe_from_map = map.keyframes.back().map_from_body.inverse();
+  Keyframe& keyframe = map.keyframes.back();
+  const Eigen::Isometry3d keyframe_from_body =
+      keyframe.map_from_body.inverse() * match.map_from_body;
   map.scans.push_back({scan.timestamp, scan.session, scan.scan_index,
-                       static_cast<int>(map.keyframes.size()) - 1,
-                       keyframe_from_map * map_from_body});
+                       static_cast<int>(map.keyframes.size()) - 1, keyframe_from_body});
+  addViews(scan, match.planes, keyframe_from_body, params_.primitives.sensor, params_.planar.cell,
+           keyframe);
 }
 
 void Mapper::addTracked(ScanFeatures scan, const TrackResult& track) {
@@ -206,8 +212,10 @@ void Mapper::finish(int threads) {
     settleMap(part.map, 1, params_);
     if (splitLandmarks(part.map, params_.primitives.sensor, params_.backend) > 0)
       settleMap(part.map, 1, params_);
-    if (unifyPlanes(part.map, params_.primitives.sensor, params_.backend) > 0)
-      updateCorners(part.map.landmarks);
+    adoptViews(params_.primitives.sensor, part.map);
+    unifyPlanes(part.map, params_.primitives.sensor, params_.backend);
+    mergeCovered(part.map, params_.planar.cell);
+    updateCorners(part.map.landmarks);
   }
   std::stable_sort(parts_.begin(), parts_.end(), [](const MapPart& a, const MapPart& b) {
     return a.map.scans.size() > b.map.scans.size();

@@ -6,11 +6,11 @@
 #include "opp/graph/union_find.h"
 #include "opp/mapping/planar/build_polygons.h"
 #include "opp/mapping/planar/line_intervals.h"
-#include "opp/mapping/planar/plane_extent.h"
 #include "opp/mapping/planar/plane_kinds.h"
 #include "opp/mapping/planar/snap_polygons.h"
 
 #include "planar/landmark_covariance.h"
+#include "planar/landmark_extents.h"
 
 #include <Eigen/LU>
 #include <Eigen/SVD>
@@ -25,42 +25,13 @@ namespace {
 
 using Index = std::size_t;
 
-/// The axis along which most of the other planes' normals lie gives outlines that follow the room's
-/// edges.
-Eigen::Vector3d rasterDirection(int landmark, const MapState& map) {
-  for (const OrthogonalityFactor& f : map.factors.orthogonalities) {
-    if (f.landmarks[0] == landmark)
-      return map.landmarks.planes[Index(f.landmarks[1])].plane_in_map.normal();
-    if (f.landmarks[1] == landmark)
-      return map.landmarks.planes[Index(f.landmarks[0])].plane_in_map.normal();
-  }
-  return Eigen::Vector3d::UnitX();
+void add(const std::vector<double>& times, std::vector<double>& all) {
+  all.insert(all.end(), times.begin(), times.end());
 }
 
-std::vector<PlaneExtent> extentsOf(const MapState& map, const PlanarParams& params) {
-  std::vector<PlaneExtent> extents;
-  for (Index l = 0; l < map.landmarks.planes.size(); ++l) {
-    extents.emplace_back(
-        PlaneFrame(map.landmarks.planes[l].plane_in_map, rasterDirection(static_cast<int>(l), map)),
-        params.cell);
-  }
-  for (const Keyframe& keyframe : map.keyframes) {
-    const OrientedCloud& cloud = keyframe.features.cloud_in_body;
-    const Eigen::Vector3d viewpoint = keyframe.map_from_body * cloud.viewpoint.cast<double>();
-    for (Index i = 0; i < cloud.size(); ++i) {
-      const Eigen::Vector3d point = keyframe.map_from_body * cloud.points[i].cast<double>();
-      const int label = keyframe.features.primitives_in_body.labels[i];
-      const int own = label < 0 ? -1 : keyframe.landmark_of_plane[Index(label)];
-      if (own >= 0) extents[Index(own)].addSupport(point, cloud.extent(i));
-      // A ray counts as passing through a plane only if it ends clearly behind it.
-      const double clearance = 2.0 * cloud.spacing;
-      for (Index l = 0; l < extents.size(); ++l) {
-        if (static_cast<int>(l) != own)
-          extents[l].addSightline(viewpoint, point, cloud.extent(i), clearance);
-      }
-    }
-  }
-  return extents;
+void sortUnique(std::vector<double>& times) {
+  std::sort(times.begin(), times.end());
+  times.erase(std::unique(times.begin(), times.end()), times.end());
 }
 
 /// What a landmark's keyframes tell of it.
@@ -74,12 +45,11 @@ PlanarMapPlane describe(const PlaneLandmark& landmark, const MapState& map,
     const Keyframe& keyframe = map.keyframes[Index(observation.keyframe)];
     const PlanePrimitive& seen =
         keyframe.features.primitives_in_body.planes[Index(observation.primitive)];
-    plane.observations.push_back(keyframe.features.timestamp);
+    add(timesOfPlane(keyframe, observation.primitive), plane.observations);
     squared_distances += seen.support * seen.rms * seen.rms;
     samples += seen.support;
   }
-  plane.observations.erase(std::unique(plane.observations.begin(), plane.observations.end()),
-                           plane.observations.end());
+  sortUnique(plane.observations);
   plane.points = samples;
   plane.rms = samples > 0 ? std::sqrt(squared_distances / static_cast<double>(samples)) : 0.0;
   plane.covariance = landmarkCovariance(landmark, map, sensor);
@@ -89,9 +59,11 @@ PlanarMapPlane describe(const PlaneLandmark& landmark, const MapState& map,
 /// Plane landmarks with polygons; `id_of_landmark` gives −1 for the others.
 void addPlanes(const MapState& map, const SensorModel& sensor, const PlanarParams& params,
                std::vector<int>& id_of_landmark, PlanarMap& result) {
-  const std::vector<PlaneExtent> extents = extentsOf(map, params);
+  const std::vector<PlaneExtent> extents = landmarkExtents(map, params);
+  const std::vector<double> shares = seenShares(map, extents, params);
   id_of_landmark.assign(extents.size(), -1);
   for (Index l = 0; l < extents.size(); ++l) {
+    if (shares[l] < params.min_seen_share) continue;
     std::vector<PlanarPolygon> polygons = buildPolygons(extents[l], params);
     if (polygons.empty()) continue;
     PlanarMapPlane plane = describe(map.landmarks.planes[l], map, sensor);
@@ -99,8 +71,11 @@ void addPlanes(const MapState& map, const SensorModel& sensor, const PlanarParam
     if (positionDeviation(plane.centroid, plane.plane, plane.covariance) >
         params.max_position_error)
       continue;
-    plane.id = static_cast<int>(result.planes.size());
     plane.area = areaOf(polygons, plane.plane.normal());
+    if (plane.observations.size() < 2 && map.scans.size() > 1 &&
+        plane.area < params.single_scan_area)
+      continue;
+    plane.id = static_cast<int>(result.planes.size());
     plane.polygons = std::move(polygons);
     id_of_landmark[l] = plane.id;
     result.planes.push_back(std::move(plane));
@@ -185,9 +160,10 @@ void addCorners(const MapState& map, const std::vector<int>& id_of_landmark, Pla
           keyframe.features.primitives_in_body.corners[Index(observation.primitive)];
       const Eigen::Matrix3d map_from_body = keyframe.map_from_body.linear();
       information += (map_from_body * seen.covariance * map_from_body.transpose()).inverse();
-      corner.observations.push_back(keyframe.features.timestamp);
+      add(timesOfCorner(keyframe, observation.primitive), corner.observations);
       corner.kind = seen.kind;
     }
+    sortUnique(corner.observations);
     corner.covariance = information.inverse();
     corner.orientation = cornerOrientation(landmark, map.landmarks);
     result.corners.push_back(std::move(corner));

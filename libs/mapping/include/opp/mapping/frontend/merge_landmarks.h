@@ -6,7 +6,13 @@
 #include "opp/mapping/backend/backend_params.h"
 #include "opp/mapping/core/map_state.h"
 
+#include <vector>
+
 namespace opp::mapping {
+
+/// Joins each landmark with that of id `joined_with[its id]`, which may be its own; the id stays,
+/// without observations.
+void joinLandmarks(const std::vector<int>& joined_with, MapState& map);
 
 /// Joins plane landmarks that have turned out to be one surface: they face the same way, their
 /// supports touch, no keyframe told them apart, and one plane explains the samples of both to

@@ -74,7 +74,7 @@ class Mapper {
   /// Keyframes that a map ties no worse than this stay in it, see `tiedSets` [m²].
   double maxOpenVariance() const;
   void splitParts();
-  void follow(const ScanFeatures& scan, const Eigen::Isometry3d& map_from_body);
+  void follow(const ScanFeatures& scan, const MatchResult& match);
 
   MapperParams params_;
   Eigen::Isometry3d initial_pose_ = Eigen::Isometry3d::Identity();

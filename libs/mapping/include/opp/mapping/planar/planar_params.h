@@ -22,6 +22,9 @@ struct PlanarParams {
   double max_camera_tilt = degToRad(45.0);
   double wall_height = 1.0;
   double max_position_error = 0.02;
+  double min_seen_share = 0.15;
+  int min_rays = 8;
+  double single_scan_area = 0.5;
 
   template <typename Self, typename F>
   static void visit(Self&& p, F&& f) {
@@ -44,6 +47,13 @@ struct PlanarParams {
     f(p.max_position_error,
       Field{"max_position_error", "m", 1e-6, 100.0,
             "planes of a map whose place is known worse (standard deviation) are left out"});
+    f(p.min_seen_share, Field{"min_seen_share", "", 0.0, 1.0,
+                              "and those that a smaller share of the scans that looked there saw"});
+    f(p.min_rays, Field{"min_rays", "", 1, 1e9,
+                        "a scan looked there if so many of its keyframe's rays meet the plane"});
+    f(p.single_scan_area,
+      Field{"single_scan_area", "m2", 0.0, 1e6,
+            "planes of a map that only one of its scans saw are left out if smaller"});
   }
 };
 
