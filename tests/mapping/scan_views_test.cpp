@@ -19,7 +19,7 @@ namespace {
 constexpr double kCell = 0.025;
 constexpr double kSigma = 0.003;
 const test::Rectangles kRoom = test::roomSides({-2.0, -2.0, 0.0}, {2.0, 2.0, 2.5});
-/// A board that hangs in the room and faces its middle, with another one `gap` in front of the
+/// A board that hangs in the room and faces its middle, with another one in front of the
 /// lower half of it.
 constexpr double kGap = 0.05;
 const test::Rectangle kBoard = {{1.5, 0.0, 1.4}, {0.0, -0.5, 0.0}, {0.0, 0.0, 0.4}};
@@ -39,8 +39,7 @@ ScanFeatures scanOf(const test::Rectangles& things, const Eigen::Isometry3d& pos
   return scan;
 }
 
-/// Adds a keyframe at its true pose; `known[p]` is the landmark of plane p, new ones beyond its
-/// end.
+/// Adds a keyframe at its true pose, whose first `known` planes are the landmarks of that id.
 void addKeyframe(const test::Rectangles& things, const Eigen::Isometry3d& pose, int step, int known,
                  MapState& map) {
   MatchResult match;

@@ -16,17 +16,16 @@ namespace {
 using Index = std::size_t;
 
 /// Samples of several scans share their error as those of one do.
-PlaneFactor factorOf(int keyframe, int landmark, const PlanePrimitive& seen,
-                     const SensorModel& sensor) {
-  PlaneFactor factor{keyframe, landmark, seen.moments, effectiveCount(seen.support, sensor)};
+PlaneFactor factorOf(int keyframe, const PlanePrimitive& seen, const SensorModel& sensor) {
+  PlaneFactor factor{keyframe, -1, seen.moments, effectiveCount(seen.support, sensor)};
   factor.moments_in_body.scaleWeights(factor.effective_samples / seen.support);
   return factor;
 }
 
 /// A plane that no keyframe saw.
 struct NewPlane {
-  int keyframe = 0;
   int view = 0;
+  PlaneFactor factor;  ///< of no landmark yet
   LandmarkSupport support;
 };
 
@@ -45,9 +44,8 @@ class Adopter {
       const std::vector<PlaneView>& views = map_.keyframes[k].views.planes;
       for (Index v = 0; v < views.size(); ++v) {
         if (views[v].keyframe_plane >= 0) continue;
-        const auto id = static_cast<int>(k);
-        planes.push_back(
-            {id, static_cast<int>(v), supportOf(factorOf(id, -1, views[v].seen, sensor_), map_)});
+        const PlaneFactor factor = factorOf(static_cast<int>(k), views[v].seen, sensor_);
+        planes.push_back({static_cast<int>(v), factor, supportOf(factor, map_)});
       }
     }
     std::stable_sort(planes.begin(), planes.end(), [](const NewPlane& a, const NewPlane& b) {
@@ -58,14 +56,15 @@ class Adopter {
 
  private:
   void adopt(const NewPlane& plane) {
-    Keyframe& keyframe = map_.keyframes[Index(plane.keyframe)];
+    Keyframe& keyframe = map_.keyframes[Index(plane.factor.keyframe)];
     PlaneView& view = keyframe.views.planes[Index(plane.view)];
     std::vector<PlanePrimitive>& planes = keyframe.features.primitives_in_body.planes;
     const int landmark = landmarkOf(plane, transformed(keyframe.map_from_body, view.seen.plane));
     view.keyframe_plane = static_cast<int>(planes.size());
     planes.push_back(view.seen);
     keyframe.landmark_of_plane.push_back(landmark);
-    map_.factors.planes.push_back(factorOf(plane.keyframe, landmark, view.seen, sensor_));
+    map_.factors.planes.push_back(plane.factor);
+    map_.factors.planes.back().landmark = landmark;
   }
 
   /// The landmark that it is, or a new one.

@@ -56,11 +56,21 @@ std::vector<PlaneExtent> emptyExtents(const MapState& map, double cell) {
   return extents;
 }
 
-void addSamples(const Keyframe& keyframe, std::vector<PlaneExtent>& extents) {
+/// Those that merging left without observations have no extent.
+std::vector<Index> observedLandmarks(const MapState& map) {
+  std::vector<Index> ids;
+  for (Index l = 0; l < map.landmarks.planes.size(); ++l) {
+    if (!map.landmarks.planes[l].observations.empty()) ids.push_back(l);
+  }
+  return ids;
+}
+
+void addSamples(const Keyframe& keyframe, const std::vector<Index>& landmarks,
+                std::vector<PlaneExtent>& extents) {
   // A ray counts as passing through a plane only if it ends clearly behind it.
   const double clearance = 2.0 * keyframe.features.cloud_in_body.spacing;
   forEachRay(keyframe, [&](const Ray& ray) {
-    for (Index l = 0; l < extents.size(); ++l) {
+    for (const Index l : landmarks) {
       if (static_cast<int>(l) == ray.landmark)
         extents[l].addSupport(ray.point, ray.footprint);
       else
@@ -92,7 +102,8 @@ class Target {
     const double at_viewpoint = plane.signedDistance(ray.viewpoint);
     const double at_point = plane.signedDistance(ray.point);
     if (at_viewpoint <= 0.0 || at_point > kOn * ray.sigma) return false;
-    const double part = at_viewpoint / (at_viewpoint - at_point);
+    // A sample that noise put before the plane is where it is: its ray need not cross at all.
+    const double part = at_viewpoint / (at_viewpoint - std::min(at_point, 0.0));
     const Eigen::Vector3d crossing = ray.viewpoint + part * (ray.point - ray.viewpoint);
     return std::binary_search(cells_.begin(), cells_.end(),
                               extent_.frame().cellAt(crossing, extent_.cell()));
@@ -112,6 +123,15 @@ bool areMeeting(const std::vector<Ray>& rays, int enough, const Target& target) 
 
 }  // namespace
 
+std::vector<double> timesOf(const PlaneLandmark& landmark, const MapState& map) {
+  std::set<double> times;
+  for (const PrimitiveObservation& o : landmark.observations) {
+    const std::vector<double> seen = timesOfPlane(map.keyframes[Index(o.keyframe)], o.primitive);
+    times.insert(seen.begin(), seen.end());
+  }
+  return {times.begin(), times.end()};
+}
+
 std::vector<PlaneExtent> landmarkSupports(const MapState& map, double cell) {
   std::vector<PlaneExtent> extents = emptyExtents(map, cell);
   for (const Keyframe& keyframe : map.keyframes) {
@@ -125,8 +145,9 @@ std::vector<PlaneExtent> landmarkSupports(const MapState& map, double cell) {
 
 std::vector<PlaneExtent> landmarkExtents(const MapState& map, const PlanarParams& params) {
   std::vector<PlaneExtent> extents = emptyExtents(map, params.cell);
+  const std::vector<Index> observed = observedLandmarks(map);
   for (const Keyframe& keyframe : map.keyframes) {
-    addSamples(keyframe, extents);
+    addSamples(keyframe, observed, extents);
     addViews(keyframe, params.cell, extents);
   }
   return extents;
@@ -135,29 +156,28 @@ std::vector<PlaneExtent> landmarkExtents(const MapState& map, const PlanarParams
 std::vector<double> seenShares(const MapState& map, const std::vector<PlaneExtent>& extents,
                                const PlanarParams& params) {
   const std::vector<PlaneLandmark>& landmarks = map.landmarks.planes;
+  const std::vector<Index> observed = observedLandmarks(map);
   const std::vector<Target> targets(extents.begin(), extents.end());
   std::vector<double> scans(map.keyframes.size());
   for (const LocalizedScan& scan : map.scans) scans[Index(scan.keyframe)] += 1.0;
   std::vector<std::set<int>> saw(landmarks.size());
-  std::vector<double> seen(landmarks.size()), looked(landmarks.size());
-  for (Index l = 0; l < landmarks.size(); ++l) {
-    for (const PrimitiveObservation& o : landmarks[l].observations) {
-      saw[l].insert(o.keyframe);
-      seen[l] +=
-          static_cast<double>(timesOfPlane(map.keyframes[Index(o.keyframe)], o.primitive).size());
-    }
+  for (const Index l : observed) {
+    for (const PrimitiveObservation& o : landmarks[l].observations) saw[l].insert(o.keyframe);
   }
+  std::vector<double> looked(landmarks.size());
   for (Index k = 0; k < map.keyframes.size(); ++k) {
     std::vector<Ray> rays;
     forEachRay(map.keyframes[k], [&](const Ray& ray) { rays.push_back(ray); });
-    for (Index l = 0; l < landmarks.size(); ++l) {
+    for (const Index l : observed) {
       if (saw[l].count(static_cast<int>(k)) > 0 || areMeeting(rays, params.min_rays, targets[l]))
         looked[l] += scans[k];
     }
   }
-  std::vector<double> shares;
-  for (Index l = 0; l < landmarks.size(); ++l)
-    shares.push_back(looked[l] > 0.0 ? std::min(1.0, seen[l] / looked[l]) : 0.0);
+  std::vector<double> shares(landmarks.size());
+  for (const Index l : observed) {
+    if (looked[l] > 0.0)
+      shares[l] = static_cast<double>(timesOf(landmarks[l], map).size()) / looked[l];
+  }
   return shares;
 }
 

@@ -10,6 +10,9 @@
 
 namespace opp::mapping {
 
+/// Times of the scans that saw a landmark: each once, ascending [s].
+std::vector<double> timesOf(const PlaneLandmark& landmark, const MapState& map);
+
 /// Where each plane landmark was seen, by id, of a map whose views were adopted (`adoptViews`).
 /// O(samples of all keyframes).
 std::vector<PlaneExtent> landmarkSupports(const MapState& map, double cell);

@@ -18,21 +18,13 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <set>
 #include <utility>
 
 namespace opp::mapping {
 namespace {
 
 using Index = std::size_t;
-
-void add(const std::vector<double>& times, std::vector<double>& all) {
-  all.insert(all.end(), times.begin(), times.end());
-}
-
-void sortUnique(std::vector<double>& times) {
-  std::sort(times.begin(), times.end());
-  times.erase(std::unique(times.begin(), times.end()), times.end());
-}
 
 /// What a landmark's keyframes tell of it.
 PlanarMapPlane describe(const PlaneLandmark& landmark, const MapState& map,
@@ -45,11 +37,10 @@ PlanarMapPlane describe(const PlaneLandmark& landmark, const MapState& map,
     const Keyframe& keyframe = map.keyframes[Index(observation.keyframe)];
     const PlanePrimitive& seen =
         keyframe.features.primitives_in_body.planes[Index(observation.primitive)];
-    add(timesOfPlane(keyframe, observation.primitive), plane.observations);
     squared_distances += seen.support * seen.rms * seen.rms;
     samples += seen.support;
   }
-  sortUnique(plane.observations);
+  plane.observations = timesOf(landmark, map);
   plane.points = samples;
   plane.rms = samples > 0 ? std::sqrt(squared_distances / static_cast<double>(samples)) : 0.0;
   plane.covariance = landmarkCovariance(landmark, map, sensor);
@@ -154,16 +145,18 @@ void addCorners(const MapState& map, const std::vector<int>& id_of_landmark, Pla
     if (*std::min_element(corner.planes.begin(), corner.planes.end()) < 0) continue;
     corner.position = landmark.position_in_map;
     Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
+    std::set<double> times;
     for (const PrimitiveObservation& observation : landmark.observations) {
       const Keyframe& keyframe = map.keyframes[Index(observation.keyframe)];
       const Corner& seen =
           keyframe.features.primitives_in_body.corners[Index(observation.primitive)];
       const Eigen::Matrix3d map_from_body = keyframe.map_from_body.linear();
       information += (map_from_body * seen.covariance * map_from_body.transpose()).inverse();
-      add(timesOfCorner(keyframe, observation.primitive), corner.observations);
+      const std::vector<double> seen_at = timesOfCorner(keyframe, observation.primitive);
+      times.insert(seen_at.begin(), seen_at.end());
       corner.kind = seen.kind;
     }
-    sortUnique(corner.observations);
+    corner.observations.assign(times.begin(), times.end());
     corner.covariance = information.inverse();
     corner.orientation = cornerOrientation(landmark, map.landmarks);
     result.corners.push_back(std::move(corner));

@@ -47,8 +47,9 @@ class Mapper {
 
   /// Lets floors be level beyond what ties maps loosely, takes parts asunder where they are tied so
   /// loosely that poses would be invented, joins those that are proven to belong together, looks
-  /// whether what joined ties better what was taken asunder, gives up parts that are too small, and
-  /// optimizes each as a whole; to be called after the last scan. Same result for every `threads`.
+  /// whether what joined ties better what was taken asunder, optimizes each as a whole, lets
+  /// scans between keyframes add what they saw, and gives up parts that are too small; to be called
+  /// after the last scan. Same result for every `threads`.
   void finish(int threads = 1);
 
   /// The parts that stayed apart, after `finish` those with most scans first; empty before the
