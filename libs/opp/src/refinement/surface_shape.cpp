@@ -5,9 +5,11 @@
 #include "refinement/plane_bookkeeping.h"
 
 #include <Eigen/Eigenvalues>
+#include <Eigen/LU>
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <utility>
 
 namespace opp {
@@ -61,6 +63,43 @@ bool turns(const TurnSums& sums, const RefinementParams& params) {
   scatter = std::max(0.0, scatter);
   const double error = std::sqrt(12.0 * scatter / sums.count);
   return turn > params.max_turn && turn > params.test_sigmas * error;
+}
+
+/// Whether the samples' places deny that the surface turns by max_turn across their extent. Normals
+/// near its rims lean toward what it borders on, as if it were curved; places do so much less.
+bool placesDeny(const std::vector<WeightedSample>& samples,
+                const std::vector<std::uint32_t>& members, const PlaneFit& fit,
+                const RefinementParams& params) {
+  using Vector6 = Eigen::Matrix<double, 6, 1>;
+  using Matrix6 = Eigen::Matrix<double, 6, 6>;
+  const Eigen::Matrix<double, 3, 2> tangents = tangentBasis(fit.plane.normal());
+  const Eigen::Vector3d mean = fit.moments.mean();
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes(
+      tangents.transpose() * fit.moments.scatter() * tangents / fit.moments.weight());
+  const Eigen::Vector2d widths = (12.0 * axes.eigenvalues().cwiseMax(0.0)).cwiseSqrt();
+  if (!(widths.minCoeff() > 0.0)) return false;
+  const Eigen::Matrix<double, 3, 2> directions = tangents * axes.eigenvectors();
+  // Height over the plane as a quadratic form of the place in units of the widths.
+  Matrix6 known = Matrix6::Zero();
+  Vector6 sums = Vector6::Zero();
+  for (const std::uint32_t i : members) {
+    const Eigen::Vector3d step = samples[i].point - mean;
+    const Eigen::Vector2d t = (directions.transpose() * step).cwiseQuotient(widths);
+    Vector6 row;
+    row << 1.0, t.x(), t.y(), 0.5 * t.x() * t.x(), t.x() * t.y(), 0.5 * t.y() * t.y();
+    known += row * row.transpose() / samples[i].variance;
+    sums += row * (fit.plane.signedDistance(samples[i].point) / samples[i].variance);
+  }
+  const Matrix6 covariance = known.inverse();
+  if (!covariance.allFinite()) return false;
+  const Vector6 form = covariance * sums;
+  for (int k = 0; k < 2; ++k) {
+    const int at = k == 0 ? 3 : 5;
+    const double turn = std::abs(form[at]) / widths[k];
+    const double error = std::sqrt(std::max(0.0, covariance(at, at))) / widths[k];
+    if (turn + params.test_sigmas * error > params.max_turn) return false;
+  }
+  return true;
 }
 
 /// Samples of one plane, in two layers.
@@ -159,7 +198,13 @@ void markCurved(const std::vector<WeightedSample>& samples, const std::vector<in
                 sign * tangents[k].col(0).dot(samples[i].normal),
                 sign * tangents[k].col(1).dot(samples[i].normal));
   }
-  for (std::size_t k = 0; k < fits.size(); ++k) fits[k].curved = turns(sums[k], params);
+  std::vector<std::vector<std::uint32_t>> members;
+  for (std::size_t k = 0; k < fits.size(); ++k) {
+    fits[k].curved = turns(sums[k], params);
+    if (!fits[k].curved) continue;
+    if (members.empty()) members = membersOf(labels, fits.size());
+    fits[k].curved = !placesDeny(samples, members[k], fits[k], params);
+  }
 }
 
 std::optional<std::array<PlaneFit, 2>> splitLayers(const std::vector<WeightedSample>& samples,
