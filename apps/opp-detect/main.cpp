@@ -69,18 +69,17 @@ Detection detect(opp::mapping::Scan scan, const MapperParams& params, int thread
   const auto& primitive_params = params.primitives;
   opp::ScanSurface surface = opp::makeScanSurface(scan.cloud_in_body, primitive_params.sensor,
                                                   primitive_params.sampling, &seconds);
-  opp::Primitives primitives = opp::detectPrimitives(surface, primitive_params, threads, &seconds);
+  opp::Primitives primitives =
+      opp::detectPrimitives(scan.cloud_in_body, surface, primitive_params, threads, &seconds);
   const std::chrono::duration<double> total = std::chrono::steady_clock::now() - start;
   opp::mapping::DetectionSummary summary;
   summary.points = scan.cloud_in_body.size();
-  summary.timings_ms = {{"normals", milliseconds(seconds.normals)},
-                        {"sampling", milliseconds(seconds.sampling)},
-                        {"voting", milliseconds(seconds.voting)},
-                        {"clustering", milliseconds(seconds.clustering)},
-                        {"refinement", milliseconds(seconds.refinement)},
-                        {"lines", milliseconds(seconds.lines)},
-                        {"corners", milliseconds(seconds.corners)},
-                        {"total", milliseconds(total.count())}};
+  summary.timings_ms = {
+      {"normals", milliseconds(seconds.normals)}, {"sampling", milliseconds(seconds.sampling)},
+      {"voting", milliseconds(seconds.voting)},   {"clustering", milliseconds(seconds.clustering)},
+      {"narrow", milliseconds(seconds.narrow)},   {"refinement", milliseconds(seconds.refinement)},
+      {"lines", milliseconds(seconds.lines)},     {"corners", milliseconds(seconds.corners)},
+      {"total", milliseconds(total.count())}};
   return {std::move(scan), std::move(surface.samples), std::move(primitives), std::move(summary)};
 }
 

@@ -87,7 +87,7 @@ void fromDepth(benchmark::State& state, Stage stage) {
   for (auto _ : state) {
     StageTimings timings;
     ScanSurface surface = makeScanSurface(cloud, params.sensor, params.sampling, &timings);
-    found = detectPrimitives(surface, params, 1, &timings);
+    found = detectPrimitives(cloud, surface, params, 1, &timings);
     state.SetIterationTime(timings.*stage);
   }
   report(state, found);
@@ -110,7 +110,7 @@ void wholeChain(benchmark::State& state) {
   Primitives found;
   for (auto _ : state) {
     ScanSurface surface = makeScanSurface(cloud, params.sensor, params.sampling);
-    found = detectPrimitives(surface, params);
+    found = detectPrimitives(cloud, surface, params);
     benchmark::DoNotOptimize(found);
   }
   report(state, found);
@@ -132,13 +132,13 @@ void recorded(benchmark::State& state, const std::string& name) {
   Primitives found;
   StageTimings sum, timings;
   const std::pair<const char*, Stage> stages[] = {
-      {"normals", &StageTimings::normals},       {"sampling", &StageTimings::sampling},
-      {"voting", &StageTimings::voting},         {"clustering", &StageTimings::clustering},
-      {"refinement", &StageTimings::refinement}, {"corners_", &StageTimings::corners},
-      {"lines_", &StageTimings::lines}};
+      {"normals", &StageTimings::normals},  {"sampling", &StageTimings::sampling},
+      {"voting", &StageTimings::voting},    {"clustering", &StageTimings::clustering},
+      {"narrow", &StageTimings::narrow},    {"refinement", &StageTimings::refinement},
+      {"corners_", &StageTimings::corners}, {"lines_", &StageTimings::lines}};
   for (auto _ : state) {
     ScanSurface surface = makeScanSurface(cloud, params.sensor, params.sampling, &timings);
-    found = detectPrimitives(surface, params, 1, &timings);
+    found = detectPrimitives(cloud, surface, params, 1, &timings);
     for (const auto& stage : stages) sum.*stage.second += timings.*stage.second;
   }
   report(state, found);
@@ -159,6 +159,7 @@ void sampleCounts(benchmark::internal::Benchmark* bench) {
 
 BENCHMARK_CAPTURE(fromDepth, normals, &StageTimings::normals)->Apply(imageSizes)->UseManualTime();
 BENCHMARK_CAPTURE(fromDepth, sampling, &StageTimings::sampling)->Apply(imageSizes)->UseManualTime();
+BENCHMARK_CAPTURE(fromDepth, narrow, &StageTimings::narrow)->Apply(imageSizes)->UseManualTime();
 BENCHMARK_CAPTURE(fromSamples, voting, &StageTimings::voting)->Apply(sampleCounts);
 BENCHMARK_CAPTURE(fromSamples, clustering, &StageTimings::clustering)->Apply(sampleCounts);
 BENCHMARK_CAPTURE(fromSamples, refinement, &StageTimings::refinement)->Apply(sampleCounts);

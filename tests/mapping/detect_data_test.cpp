@@ -26,7 +26,7 @@ TEST(DetectPrimitives, FindsRoomAndSofaForEverySeed) {
   for (params.voting.seed = 1; params.voting.seed <= 100; ++params.voting.seed) {
     SCOPED_TRACE(params.voting.seed);
     ScanSurface surface = makeScanSurface(cloud, params.sensor, params.sampling);
-    const Primitives found = detectPrimitives(surface, params);
+    const Primitives found = detectPrimitives(cloud, surface, params);
     EXPECT_GE(found.planes.size(), 9U);
     for (const Eigen::Vector3d& corner : corners) {
       EXPECT_TRUE(std::any_of(found.corners.begin(), found.corners.end(), [&](const Corner& c) {

@@ -65,7 +65,7 @@ TEST(DetectPrimitives, DetailShowsTheSidesOfASmallBox) {
     const PrimitiveParams params;
     test::addRangeNoise(cloud, params.sensor, random);
     ScanSurface surface = makeScanSurface(cloud, params.sensor, params.sampling);
-    const Primitives primitives = detectPrimitives(surface, params);
+    const Primitives primitives = detectPrimitives(cloud, surface, params);
     ASSERT_EQ(primitives.labels.size(), surface.samples.size());
     for (const Plane& side : sides) {
       if (side.d() < 0.0) continue;  // on the far side

@@ -96,7 +96,7 @@ std::vector<Eigen::Vector3d> edgesOf(const Box& box) {
 
 Primitives primitivesOf(const PointCloud& cloud, const PrimitiveParams& params) {
   ScanSurface surface = makeScanSurface(cloud, params.sensor, params.sampling);
-  return detectPrimitives(surface, params);
+  return detectPrimitives(cloud, surface, params);
 }
 
 /// Planes and corners are the box's, in one exact frame; as many as `planes` and `corners`.

@@ -96,8 +96,9 @@ TEST(ManyClouds, GiveFinitePrimitives) {
     SCOPED_TRACE(seed);
     params.sensor.min_range = seed % 2 == 0 ? 0.0 : 0.3;
     params.sensor.max_range = seed % 2 == 0 ? 1000.0 : 6.0;
-    ScanSurface surface = makeScanSurface(anyCloud(seed), params.sensor, params.sampling);
-    const Primitives found = detectPrimitives(surface, params);
+    const PointCloud cloud = anyCloud(seed);
+    ScanSurface surface = makeScanSurface(cloud, params.sensor, params.sampling);
+    const Primitives found = detectPrimitives(cloud, surface, params);
     ASSERT_EQ(found.labels.size(), surface.samples.size());
     for (const int label : found.labels) {
       ASSERT_LT(label, static_cast<int>(found.planes.size()));

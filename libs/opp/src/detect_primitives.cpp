@@ -8,17 +8,15 @@
 #include "opp/primitives/find_lines.h"
 #include "opp/refinement/refine_planes.h"
 
+#include "narrow/add_narrow_planes.h"
 #include "primitives/stopwatch.h"
 
 namespace opp {
 namespace {
 
-/// All stages after voting. `stopwatch` ran since the beginning of that; fills `laps`.
-Primitives primitivesOf(const OrientedCloud& cloud, const OppHypotheses& hypotheses,
+/// All stages after clustering. `stopwatch` ran since the beginning of the last; fills `laps`.
+Primitives primitivesOf(const OrientedCloud& cloud, const PlaneGraph& graph,
                         const PrimitiveParams& params, Stopwatch stopwatch, StageTimings& laps) {
-  laps.voting = stopwatch.lap();
-  const PlaneGraph graph = buildPlaneGraph(cloud, hypotheses, params.sensor, params.graph);
-  laps.clustering = stopwatch.lap();
   Primitives primitives = refinePlanes(cloud, graph, params.sensor, params.refinement);
   laps.refinement = stopwatch.lap();
   primitives.corners = findCorners(cloud, primitives, params.corners);
@@ -30,23 +28,31 @@ Primitives primitivesOf(const OrientedCloud& cloud, const OppHypotheses& hypothe
 
 }  // namespace
 
-Primitives detectPrimitives(ScanSurface& surface, const PrimitiveParams& params, int threads,
-                            StageTimings* timings) {
+Primitives detectPrimitives(const PointCloud& cloud, ScanSurface& surface,
+                            const PrimitiveParams& params, int threads, StageTimings* timings) {
   StageTimings unwanted;
-  const Stopwatch stopwatch;
+  StageTimings& laps = timings == nullptr ? unwanted : *timings;
+  Stopwatch stopwatch;
   // Voting splits samples: the surface holds others afterwards.
   const OppHypotheses hypotheses = detectOpps(surface, params.sensor, params.voting, threads);
-  return primitivesOf(surface.samples, hypotheses, params, stopwatch,
-                      timings == nullptr ? unwanted : *timings);
+  laps.voting = stopwatch.lap();
+  PlaneGraph graph = buildPlaneGraph(surface.samples, hypotheses, params.sensor, params.graph);
+  laps.clustering = stopwatch.lap();
+  addNarrowPlanes(cloud, params, surface.samples, graph);
+  laps.narrow = stopwatch.lap();
+  return primitivesOf(surface.samples, graph, params, stopwatch, laps);
 }
 
 Primitives detectPrimitives(const OrientedCloud& cloud, const PrimitiveParams& params, int threads,
                             StageTimings* timings) {
   StageTimings unwanted;
-  const Stopwatch stopwatch;
+  StageTimings& laps = timings == nullptr ? unwanted : *timings;
+  Stopwatch stopwatch;
   const OppHypotheses hypotheses = detectOpps(cloud, params.sensor, params.voting, threads);
-  return primitivesOf(cloud, hypotheses, params, stopwatch,
-                      timings == nullptr ? unwanted : *timings);
+  laps.voting = stopwatch.lap();
+  const PlaneGraph graph = buildPlaneGraph(cloud, hypotheses, params.sensor, params.graph);
+  laps.clustering = stopwatch.lap();
+  return primitivesOf(cloud, graph, params, stopwatch, laps);
 }
 
 }  // namespace opp

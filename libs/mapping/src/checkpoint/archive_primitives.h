@@ -48,9 +48,9 @@ void load(Archive& archive, PointMoments& moments) {
 template <typename Archive>
 void serialize(Archive& archive, OrientedCloud& value) {
   auto& [points, normals, sigmas, weights, extents, patch_extents, viewpoint, spacing,
-         noise_correlation] = value;
+         noise_correlation, narrow_samples] = value;
   archive(points, normals, sigmas, weights, extents, patch_extents, viewpoint, spacing,
-          noise_correlation);
+          noise_correlation, narrow_samples);
 }
 
 template <typename Archive>

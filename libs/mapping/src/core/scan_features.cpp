@@ -13,7 +13,7 @@ ScanFeatures detectFeatures(const PointCloud& cloud_in_body, const PrimitivePara
                             int threads) {
   ScanFeatures features;
   ScanSurface surface = makeScanSurface(cloud_in_body, params.sensor, params.sampling);
-  features.primitives_in_body = detectPrimitives(surface, params, threads);
+  features.primitives_in_body = detectPrimitives(cloud_in_body, surface, params, threads);
   features.cloud_in_body = std::move(surface.samples);
   features.rims_in_body = findRims(cloud_in_body, params.sensor, params.rims);
   return features;

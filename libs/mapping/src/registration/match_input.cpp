@@ -13,14 +13,17 @@
 namespace opp::mapping {
 
 std::vector<ScanPoint> scanPoints(const ScanFeatures& scan, const SensorModel& sensor,
-                                  std::size_t max_points) {
+                                  const RegistrationParams& params) {
   const OrientedCloud& cloud = scan.cloud_in_body;
   std::vector<ScanPoint> points;
   std::map<int, double> counts;
-  for (const std::uint32_t i : sampleNormalSpace(cloud, max_points)) {
+  const std::size_t narrow = cloud.size() - cloud.narrow_samples;
+  const double doubt = params.narrow_caution * params.narrow_caution;
+  for (const std::uint32_t i :
+       sampleNormalSpace(cloud, static_cast<std::size_t>(params.max_points))) {
     const int label = scan.primitives_in_body.labels[i];
-    points.push_back(
-        {cloud.points[i], cloud.normals[i], sampleVariance(cloud, i, sensor), label, 1.0});
+    const double variance = (i < narrow ? 1.0 : doubt) * sampleVariance(cloud, i, sensor);
+    points.push_back({cloud.points[i], cloud.normals[i], static_cast<float>(variance), label, 1.0});
     counts[label] += 1.0;
   }
   for (ScanPoint& p : points) p.worth = effectiveCount(counts[p.label], sensor) / counts[p.label];

@@ -5,6 +5,7 @@
 #include "opp/cloud/sensor_model.h"
 #include "opp/geometry/point_moments.h"
 #include "opp/mapping/core/scan_features.h"
+#include "opp/mapping/registration/registration_params.h"
 
 #include <Eigen/Core>
 
@@ -22,11 +23,11 @@ struct ScanPoint {
   double worth = 1.0;  ///< of one point, given all points of its surface; see effectiveCount
 };
 
-/// At most `max_points` samples, even over the directions of their normals. Points of one plane
-/// share a part of their error, which their worth tells; all that are on no plane count as one
-/// surface.
+/// At most `params.max_points` samples, even over the directions of their normals. Points of one
+/// plane share a part of their error, which their worth tells; all that are on no plane count as
+/// one surface.
 std::vector<ScanPoint> scanPoints(const ScanFeatures& scan, const SensorModel& sensor,
-                                  std::size_t max_points);
+                                  const RegistrationParams& params);
 
 /// The rims of a scan as points; together they are worth what one surface is.
 std::vector<ScanPoint> rimPoints(const ScanFeatures& scan, const SensorModel& sensor);

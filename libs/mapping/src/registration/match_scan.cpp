@@ -33,7 +33,7 @@ class Matcher {
         prior_(prior),
         params_(params),
         pose_(prior.map_from_body),
-        points_(scanPoints(scan, map.sensor(), static_cast<std::size_t>(params.max_points))),
+        points_(scanPoints(scan, map.sensor(), params)),
         rims_(rimPoints(scan, map.sensor())),
         planes_(scanPlanes(scan, map.sensor())),
         range_(rmsRange(points_)) {}

@@ -19,8 +19,11 @@ Primitives detectPrimitives(const OrientedCloud& cloud, const PrimitiveParams& p
                             int threads = 1, StageTimings* timings = nullptr);
 
 /// As above, with more detail: samples on no large plane are split into the patches that they were
-/// averaged from. The labels are of `surface.samples` as they are then.
-Primitives detectPrimitives(ScanSurface& surface, const PrimitiveParams& params, int threads = 1,
+/// averaged from, and in depth images planes too narrow for patches are found pixel by pixel, in
+/// `cloud`, which `makeScanSurface` made the surface of. The labels are of `surface.samples` as
+/// they are then.
+Primitives detectPrimitives(const PointCloud& cloud, ScanSurface& surface,
+                            const PrimitiveParams& params, int threads = 1,
                             StageTimings* timings = nullptr);
 
 }  // namespace opp

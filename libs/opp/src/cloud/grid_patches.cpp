@@ -2,18 +2,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cloud/grid_patches.h"
 
-#include <Eigen/Geometry>
+#include "cloud/depth_image.h"
 
 #include <algorithm>
 #include <cmath>
 
 namespace opp {
 namespace {
-
-/// Noise takes points of surfaces near the end of the sensor's range beyond it, and the mean of
-/// those left is nearer than their surface: so many standard deviations before the end by less than
-/// 1 % of one.
-constexpr double kTruncationSigmas = 3.0;
 
 struct RangeGate {
   Eigen::Vector3f viewpoint;
@@ -32,32 +27,6 @@ struct RangeGate {
   }
 };
 
-/// Median angle between the rays of grid neighbours (`row_step`, `col_step` apart); 0 if there are
-/// none. A sample of the grid is enough.
-double neighborAngle(const PointCloud& cloud, const RangeGate& gate, int row_step, int col_step) {
-  constexpr int kSamples = 500;
-  const int rows = cloud.rows - row_step;
-  const int cols = cloud.cols - col_step;
-  if (rows < 1 || cols < 1) return 0.0;
-  const long long total = static_cast<long long>(rows) * cols;
-  const long long stride = std::max(1LL, total / kSamples);
-  std::vector<double> angles;
-  for (long long k = 0; k < total; k += stride) {
-    const auto at = static_cast<std::size_t>(k / cols * cloud.cols + k % cols);
-    const std::size_t beside =
-        at + static_cast<std::size_t>(row_step) * static_cast<std::size_t>(cloud.cols) +
-        static_cast<std::size_t>(col_step);
-    if (!gate.contains(cloud.points[at]) || !gate.contains(cloud.points[beside])) continue;
-    const Eigen::Vector3d a = (cloud.points[at] - gate.viewpoint).cast<double>();
-    const Eigen::Vector3d b = (cloud.points[beside] - gate.viewpoint).cast<double>();
-    angles.push_back(std::atan2(a.cross(b).norm(), a.dot(b)));
-  }
-  if (angles.empty()) return 0.0;
-  const auto middle = angles.begin() + static_cast<std::ptrdiff_t>(angles.size() / 2);
-  std::nth_element(angles.begin(), middle, angles.end());
-  return *middle;
-}
-
 /// Amid the points, where sums of coordinates lose the fewest digits.
 Eigen::Vector3d roughCenter(const PointCloud& cloud, const RangeGate& gate) {
   constexpr std::size_t kSamples = 500;
@@ -71,12 +40,6 @@ Eigen::Vector3d roughCenter(const PointCloud& cloud, const RangeGate& gate) {
   }
   return count > 0.0 ? Eigen::Vector3d(sum / count) : cloud.viewpoint.cast<double>();
 }
-
-/// Angles between neighbouring rays [rad]; 0: unknown.
-struct GridAngles {
-  double row = 0.0;
-  double col = 0.0;
-};
 
 struct BlockShape {
   int rows = 1;
@@ -122,16 +85,14 @@ MomentSums blockSums(const PointCloud& cloud, const RangeGate& gate, const Eigen
 GridPatches makeGridPatches(const PointCloud& cloud, const SensorModel& sensor,
                             std::size_t target) {
   const RangeGate gate(cloud, sensor);
-  const GridAngles angles{neighborAngle(cloud, gate, 1, 0), neighborAngle(cloud, gate, 0, 1)};
+  const GridAngles angles = gridAngles(cloud, sensor);
   const BlockShape shape = blockShape(cloud, angles, target);
   GridPatches grid;
   grid.rows = (cloud.rows + shape.rows - 1) / shape.rows;
   grid.cols = (cloud.cols + shape.cols - 1) / shape.cols;
-  grid.block_rows = shape.rows;
-  grid.block_cols = shape.cols;
   grid.columns_wrap = cloud.columns_wrap;
   grid.patches.origin = roughCenter(cloud, gate);
-  const double farthest = sensor.max_range - kTruncationSigmas * sensor.sigma(sensor.max_range);
+  const double farthest = sensor.farthestSurface();
   const Eigen::Vector3d viewpoint = cloud.viewpoint.cast<double>() - grid.patches.origin;
   const auto rangeOf = [&](const MomentSums& sums) {
     return (sums.segment<3>(1).matrix() / sums[0] - viewpoint).norm();

@@ -7,7 +7,6 @@
 
 #include "cloud/patches.h"
 
-#include <algorithm>
 #include <cstddef>
 #include <vector>
 
@@ -18,11 +17,6 @@ struct GridPatches {
   Patches patches;
   int rows = 0;  ///< of blocks
   int cols = 0;
-  int block_rows = 1;  ///< of points in a block
-  int block_cols = 1;
-  /// Points in a cell, a quarter of a block.
-  int cellRows() const { return std::max(1, block_rows / 2); }
-  int cellCols() const { return std::max(1, block_cols / 2); }
   bool columns_wrap = false;
   /// [row * cols + col]; −1: no point in it, or too far away
   std::vector<int> patch_of_block;

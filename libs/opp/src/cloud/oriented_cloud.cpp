@@ -6,10 +6,7 @@
 
 #include "cloud/check_cloud.h"
 #include "cloud/grid_patches.h"
-#include "cloud/main_directions.h"
-#include "cloud/open_cells.h"
 #include "cloud/patch_normals.h"
-#include "cloud/strip_patches.h"
 #include "cloud/voxel_patches.h"
 #include "primitives/stopwatch.h"
 
@@ -59,59 +56,24 @@ OrientedCloud fromGivenNormals(const PointCloud& cloud, const SensorModel& senso
   return dense;
 }
 
-struct PatchSurface {
-  OrientedCloud dense;
-  std::vector<PatchNormal> normals;  ///< of all patches
-};
-
-/// Appends the part of a surface that `count` raw points around `point` show.
-void appendPatch(const Patches& patches, const Eigen::Vector3d& viewpoint,
-                 const Eigen::Vector3d& point, const Eigen::Vector3d& normal, double sigma,
-                 double count, OrientedCloud& dense) {
-  append(dense, point.cast<float>(), normal.cast<float>(), sigma, count);
-  dense.extents.push_back(static_cast<float>(patches.extentOf(count, normal, viewpoint - point)));
-}
-
-PatchSurface fromPatches(const Patches& patches, PatchWindows& windows, const PointCloud& cloud,
-                         const SensorModel& sensor, const SamplingParams& params) {
+OrientedCloud fromPatches(const Patches& patches, PatchWindows& windows, const PointCloud& cloud,
+                          const SensorModel& sensor, const SamplingParams& params) {
   const Eigen::Vector3d viewpoint = cloud.viewpoint.cast<double>();
   PatchNormals estimator(patches, windows, viewpoint, sensor, params);
-  PatchSurface surface;
-  surface.normals = estimator.estimate();
-  OrientedCloud& dense = surface.dense;
+  const std::vector<PatchNormal> normals = estimator.estimate();
+  OrientedCloud dense;
   dense.noise_correlation = estimator.noiseCorrelation();
   reserve(dense, patches.size());
   dense.extents.reserve(patches.size());
   for (std::size_t i = 0; i < patches.size(); ++i) {
-    const Eigen::Vector3d& normal = surface.normals[i].normal;
+    const Eigen::Vector3d& normal = normals[i].normal;
     if (normal.isZero()) continue;
     const Eigen::Vector3d point = patches.origin + patches.means[i];
-    appendPatch(patches, viewpoint, point, normal, surface.normals[i].sigma, patches.sums[i][0],
-                dense);
+    const double count = patches.sums[i][0];
+    append(dense, point.cast<float>(), normal.cast<float>(), normals[i].sigma, count);
+    dense.extents.push_back(static_cast<float>(patches.extentOf(count, normal, viewpoint - point)));
   }
-  return surface;
-}
-
-/// Appends what windows of patches are too wide for.
-void addStrips(const GridPatches& grid, const PointCloud& cloud, const SensorModel& sensor,
-               const SamplingParams& params, PatchSurface& surface) {
-  std::vector<Eigen::Vector3d> normals;
-  for (const PatchNormal& patch : surface.normals) {
-    if (!patch.normal.isZero()) normals.push_back(patch.normal);
-  }
-  const std::vector<Eigen::Vector3d> directions = mainDirections(normals);
-  const double pixel_angle = grid.patches.pixel_angle;
-  // The mean of a cell's points, whose errors are correlated, is less certain than if they were
-  // not.
-  const double points = grid.cellRows() * grid.cellCols();
-  const double correlation = std::max(0.0, surface.dense.noise_correlation);
-  const PointNoise noise(sensor, params, pixel_angle, 1.0 + (points - 1.0) * correlation);
-  const OpenCells cells = openCells(cloud, grid, surface.normals, directions, sensor, noise);
-  const Eigen::Vector3d viewpoint = cloud.viewpoint.cast<double>();
-  for (const StripPatch& strip : findStrips(cells, directions, params, noise, pixel_angle)) {
-    appendPatch(grid.patches, viewpoint, viewpoint + strip.point, strip.normal, strip.sigma,
-                strip.count, surface.dense);
-  }
+  return dense;
 }
 
 OrientedCloud fromUnorganized(const PointCloud& cloud, const SensorModel& sensor,
@@ -124,7 +86,7 @@ OrientedCloud fromUnorganized(const PointCloud& cloud, const SensorModel& sensor
   const double edge = spacingForCount(points, patch_count, 0.0);
   if (edge <= 0.0) return {};  // all points are one
   const Patches patches = makeVoxelPatches(points, edge);
-  return fromPatches(patches, *nearestPatches(patches), cloud, sensor, params).dense;
+  return fromPatches(patches, *nearestPatches(patches), cloud, sensor, params);
 }
 
 OrientedCloud denseSurface(const PointCloud& cloud, const SensorModel& sensor,
@@ -135,10 +97,7 @@ OrientedCloud denseSurface(const PointCloud& cloud, const SensorModel& sensor,
   if (!cloud.organized()) return fromUnorganized(cloud, sensor, params, patch_count);
   const GridPatches grid = makeGridPatches(cloud, sensor, patch_count);
   GridWindows windows(grid, params.max_window_radius);
-  PatchSurface surface = fromPatches(grid.patches, windows, cloud, sensor, params);
-  // The rings of a spinning lidar are too far apart.
-  if (!cloud.columns_wrap) addStrips(grid, cloud, sensor, params, surface);
-  return std::move(surface.dense);
+  return fromPatches(grid.patches, windows, cloud, sensor, params);
 }
 
 /// The middle one of the points' noise levels: most samples need not be closer than it allows.

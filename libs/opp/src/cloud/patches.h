@@ -30,6 +30,13 @@ inline MomentSums shifted(const MomentSums& sums, const Eigen::Vector3d& offset)
   return out;
 }
 
+/// Area of the surface that so many pixels of a solid angle show: r² dω / cos [m²].
+inline double patchArea(double pixels, double solid_angle, double height, double range) {
+  constexpr double kLeastCosine = 0.1;
+  const double cosine_range = std::max(std::abs(height), kLeastCosine * range);
+  return pixels * solid_angle * range * range * range / cosine_range;
+}
+
 /// Neighbouring raw points taken together: the unit in which normals are estimated.
 struct Patches {
   Eigen::Vector3d origin = Eigen::Vector3d::Zero();  ///< of all moments, in the cloud's frame [m]
@@ -48,10 +55,8 @@ struct Patches {
   double extentOf(double points, const Eigen::Vector3d& normal,
                   const Eigen::Vector3d& to_viewpoint) const {
     if (solid_angle == 0.0) return edge;
-    // r² dω / cos: a pixel's part of a surface that is seen at an angle.
-    const double range = to_viewpoint.norm();
-    const double cosine_range = std::max(std::abs(normal.dot(to_viewpoint)), 0.1 * range);
-    return range * std::sqrt(points * solid_angle * range / cosine_range);
+    const double height = normal.dot(to_viewpoint);
+    return std::sqrt(patchArea(points, solid_angle, height, to_viewpoint.norm()));
   }
   void add(const MomentSums& patch_sums) {
     sums.push_back(patch_sums);

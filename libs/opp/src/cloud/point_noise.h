@@ -31,8 +31,12 @@ class PointNoise {
   /// With what a ray's direction is off by: it meets a slanted surface nearer or farther (modelled
   /// so by Handa et al., ICRA 2014).
   double expected(double squared_range, double height) const {
-    const double slanted = std::max(0.0, squared_range - height * height);
-    return scale_ * (model(squared_range, height) + lateral_ * slanted);
+    return expectedAt(squared_range, height * height);
+  }
+  /// The same, for the square of a height.
+  double expectedAt(double squared_range, double squared_height) const {
+    const double slanted = std::max(0.0, squared_range - squared_height);
+    return scale_ * (constant_ + quadratic_ * squared_range * squared_height + lateral_ * slanted);
   }
 
  private:

@@ -45,6 +45,7 @@ struct OrientedCloud {
   double spacing = 0.0;         ///< d_min of the sampling [m]
   /// Correlation of the errors of neighbouring raw points, as this cloud shows it; < 0: unknown.
   double noise_correlation = -1.0;
+  std::size_t narrow_samples = 0;  ///< so many at the end are of planes found pixel by pixel
 
   std::size_t size() const { return points.size(); }
   double extent(std::size_t i) const {

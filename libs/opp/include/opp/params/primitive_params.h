@@ -7,6 +7,7 @@
 #include "opp/cloud/sensor_model.h"
 #include "opp/detection/voting_params.h"
 #include "opp/graph/graph_params.h"
+#include "opp/narrow/narrow_params.h"
 #include "opp/primitives/corner_params.h"
 #include "opp/primitives/line_params.h"
 #include "opp/refinement/refinement_params.h"
@@ -19,6 +20,7 @@ struct PrimitiveParams {
   SamplingParams sampling;
   VotingParams voting;
   GraphParams graph;
+  NarrowParams narrow;
   RefinementParams refinement;
   CornerParams corners;
   LineParams lines;
@@ -31,6 +33,7 @@ struct PrimitiveParams {
     f(p.sampling);
     f(p.voting);
     f(p.graph);
+    f(p.narrow);
     f(p.refinement);
     f(p.corners);
     f(p.lines);

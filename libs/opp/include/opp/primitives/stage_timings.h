@@ -11,6 +11,7 @@ struct StageTimings {
   double sampling = 0.0;
   double voting = 0.0;
   double clustering = 0.0;
+  double narrow = 0.0;  ///< narrow planes
   double refinement = 0.0;
   double corners = 0.0;
   double lines = 0.0;

@@ -1,0 +1,66 @@
+// SPDX-FileCopyrightText: 2026 The opp-mapping authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "opp/cloud/sampling_params.h"
+#include "opp/cloud/sensor_model.h"
+#include "opp/geometry/point_cloud.h"
+
+#include "cloud/point_noise.h"
+
+#include <Eigen/Core>
+
+#include <cstddef>
+
+namespace opp {
+
+/// Angles between neighbouring rays of a grid [rad]; 0: unknown.
+struct GridAngles {
+  double row = 0.0;  ///< from row to row
+  double col = 0.0;
+};
+
+/// Medians over the points within the sensor's range. A sample of the grid is enough.
+GridAngles gridAngles(const PointCloud& cloud, const SensorModel& sensor);
+
+/// An organized cloud as its sensor saw it: points about the viewpoint, and their noise.
+class DepthImage {
+ public:
+  /// `cloud` must outlive this. `correlation`: of the errors of neighbouring pixels.
+  DepthImage(const PointCloud& cloud, const SensorModel& sensor, const SamplingParams& params,
+             double correlation);
+
+  int rows() const { return cloud_.rows; }
+  int cols() const { return cloud_.cols; }
+  std::size_t size() const { return cloud_.size(); }
+  int indexOf(int row, int col) const { return row * cloud_.cols + col; }
+  Eigen::Vector3f point(int pixel) const {
+    return cloud_.points[static_cast<std::size_t>(pixel)] - cloud_.viewpoint;
+  }
+  /// False for points that are not finite: they compare false.
+  bool inRange(const Eigen::Vector3f& point) const {
+    const float squared = point.squaredNorm();
+    return (squared >= least_) & (squared <= most_);
+  }
+  /// The closer of the angles between neighbouring rays [rad].
+  double pixelAngle() const { return pixel_angle_; }
+  /// Of a pixel [sr].
+  double solidAngle() const { return solid_angle_; }
+  const PointNoise& noise() const { return noise_; }
+  /// Variance of the mean of `count` neighbouring pixels over that of one.
+  double meanVariance(double count) const { return (1.0 + (count - 1.0) * correlation_) / count; }
+  /// Between neighbours of one surface ranges differ by no more than noise and a surface seen at
+  /// 80° make them.
+  bool jumps(float range_a, float range_b) const;
+
+ private:
+  DepthImage(const PointCloud& cloud, const SensorModel& sensor, const SamplingParams& params,
+             double correlation, const GridAngles& angles);
+
+  const PointCloud& cloud_;
+  float least_, most_;  ///< squared ranges [m²]
+  double pixel_angle_, solid_angle_, correlation_;
+  PointNoise noise_;
+};
+
+}  // namespace opp

@@ -1,0 +1,348 @@
+// SPDX-FileCopyrightText: 2026 The opp-mapping authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "narrow/pixel_region.h"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+namespace opp {
+namespace {
+
+/// Pixels around a region's cells that may be on its plane: others near it keep them from being
+/// open.
+constexpr int kMargin = 2;
+constexpr int kPasses = 3;
+/// Edges are looked for before these passes: a pass moves them little.
+constexpr int kEdgeStride = 2;
+/// Tukey's biweight, in standard deviations.
+constexpr double kOutlier = 4.0;
+/// The ray of a pixel is known to half a pixel, which side of an edge it shows no better.
+constexpr double kEdgePixels = 0.5;
+/// Cells in a line have two neighbours each, in two lines five: seams between surfaces are lines.
+constexpr double kLeastNeighbours = 3.5;
+/// Surfaces that are as parallel as this have no edge with each other.
+constexpr double kParallelCosine = 0.97;
+
+/// Means of the pixels in cells, of one plane.
+struct CellMean {
+  Eigen::Vector3d point = Eigen::Vector3d::Zero();
+  double count = 0.0;
+  int row = 0, col = 0;
+};
+
+std::vector<CellMean> cellsOf(const DepthImage& image, const std::vector<int>& pixels) {
+  struct Entry {
+    int row, col, pixel;
+  };
+  std::vector<Entry> entries;
+  entries.reserve(pixels.size());
+  for (const int pixel : pixels) {
+    entries.push_back(
+        {pixel / image.cols() / PixelCell::kEdge, pixel % image.cols() / PixelCell::kEdge, pixel});
+  }
+  std::sort(entries.begin(), entries.end(), [](const Entry& a, const Entry& b) {
+    return a.row != b.row ? a.row < b.row : a.col != b.col ? a.col < b.col : a.pixel < b.pixel;
+  });
+  std::vector<CellMean> cells;
+  for (const Entry& entry : entries) {
+    if (cells.empty() || cells.back().row != entry.row || cells.back().col != entry.col) {
+      cells.push_back({Eigen::Vector3d::Zero(), 0.0, entry.row, entry.col});
+    }
+    cells.back().point += image.point(entry.pixel).cast<double>();
+    cells.back().count += 1.0;
+  }
+  for (CellMean& cell : cells) cell.point /= cell.count;
+  return cells;
+}
+
+/// Neighbours of a cell among the others, which are sorted by row and column.
+double meanNeighbours(const std::vector<CellMean>& cells) {
+  double pairs = 0.0;
+  std::size_t above = 0;  // the first cell that is not before the neighbour above on the left
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    const CellMean& cell = cells[i];
+    if (i > 0 && cells[i - 1].row == cell.row && cells[i - 1].col + 1 == cell.col) pairs += 2.0;
+    const auto before = [&](const CellMean& other) {
+      return other.row < cell.row - 1 || (other.row == cell.row - 1 && other.col < cell.col - 1);
+    };
+    while (before(cells[above])) ++above;
+    for (std::size_t k = above; cells[k].row < cell.row && cells[k].col <= cell.col + 1; ++k) {
+      pairs += 2.0;
+    }
+  }
+  return pairs / static_cast<double>(cells.size());
+}
+
+/// Second moments of two coordinates.
+struct Spread {
+  Eigen::Vector2d sum = Eigen::Vector2d::Zero();
+  Eigen::Matrix2d squares = Eigen::Matrix2d::Zero();
+  double count = 0.0;
+  void add(const Eigen::Vector2d& x) {
+    sum += x;
+    squares += x * x.transpose();
+    count += 1.0;
+  }
+  Eigen::Vector2d mean() const { return sum / count; }
+  Eigen::Matrix2d covariance() const { return squares / count - mean() * mean().transpose(); }
+};
+
+/// A rectangle of width w has variance w²/12.
+double widthOf(double variance) { return std::sqrt(12.0 * std::max(0.0, variance)); }
+
+/// Cells about a plane through them.
+class Shape {
+ public:
+  Shape(const DepthImage& image, const Plane& plane, std::vector<CellMean> cells)
+      : plane_(plane), cells_(std::move(cells)) {
+    const double height = plane.d();
+    for (const CellMean& cell : cells_) {
+      variances_.push_back(image.noise().expected(cell.point.squaredNorm(), height) *
+                           image.meanVariance(cell.count));
+    }
+  }
+
+  /// Mean squared offset over that of the noise.
+  double scatter() const {
+    double sum = 0.0;
+    for (std::size_t i = 0; i < cells_.size(); ++i) {
+      const double offset = plane_.signedDistance(cells_[i].point);
+      sum += offset * offset / variances_[i];
+    }
+    return sum / static_cast<double>(cells_.size());
+  }
+
+  /// Whether the surface turns by more than `most` across its extent, and by more than `sigmas`
+  /// times what noise could feign.
+  bool turns(double most, double sigmas) const {
+    const Eigen::Matrix<double, 3, 2> tangents = tangentBasis(plane_.normal());
+    Spread spread;
+    for (const CellMean& cell : cells_) spread.add(tangents.transpose() * cell.point);
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes(spread.covariance());
+    const Eigen::Vector2d widths(widthOf(axes.eigenvalues()[0]), widthOf(axes.eigenvalues()[1]));
+    if (!(widths[0] > 0.0)) return true;
+    // The height is a quadratic form of the place, in widths.
+    using Vector6 = Eigen::Matrix<double, 6, 1>;
+    using Matrix6 = Eigen::Matrix<double, 6, 6>;
+    Matrix6 known = Matrix6::Zero();
+    Vector6 sums = Vector6::Zero();
+    for (std::size_t i = 0; i < cells_.size(); ++i) {
+      const Eigen::Vector2d place = tangents.transpose() * cells_[i].point - spread.mean();
+      const Eigen::Vector2d t = (axes.eigenvectors().transpose() * place).cwiseQuotient(widths);
+      Vector6 row;
+      row << 1.0, t.x(), t.y(), 0.5 * t.x() * t.x(), t.x() * t.y(), 0.5 * t.y() * t.y();
+      known += row * row.transpose() / variances_[i];
+      sums += row * (plane_.signedDistance(cells_[i].point) / variances_[i]);
+    }
+    const Eigen::LDLT<Matrix6> solver(known);
+    const Vector6 form = solver.solve(sums);
+    for (const int k : {0, 1}) {
+      const int at = k == 0 ? 3 : 5;
+      const double turn = std::abs(form[at]) / widths[k];
+      const double error =
+          std::sqrt(std::max(0.0, solver.solve(Vector6::Unit(at))[at])) / widths[k];
+      if (turn > most && turn > sigmas * error) return true;
+    }
+    return false;
+  }
+
+ private:
+  const Plane& plane_;
+  std::vector<CellMean> cells_;
+  std::vector<double> variances_;  ///< of the cells' heights
+};
+
+KnownSurface surfaceOf(const DepthImage& image, const PixelRegion& region) {
+  const Plane plane = region.frame.planeOf(region.coefficients);
+  KnownSurface surface;
+  surface.normal = plane.normal().cast<float>();
+  surface.height = static_cast<float>(-plane.d());
+  for (const int pixel : region.pixels) surface.reach.extend(image.point(pixel));
+  const float margin =
+      static_cast<float>(kMargin * image.pixelAngle()) * surface.reach.center().norm();
+  surface.reach.min().array() -= margin;
+  surface.reach.max().array() += margin;
+  return surface;
+}
+
+}  // namespace
+
+RegionFitter::RegionFitter(const DepthImage& image, std::vector<KnownSurface> surfaces,
+                           RegionRule rule)
+    : image_(image),
+      surfaces_(std::move(surfaces)),
+      known_(surfaces_.size()),
+      self_(std::numeric_limits<std::size_t>::max()),
+      rule_(std::move(rule)),
+      taken_(image.size(), 0),
+      reached_(image.size(), 0) {}
+
+std::vector<RegionFitter::Candidate> RegionFitter::candidatesOf(const PixelRegion& region) {
+  std::vector<Candidate> candidates;
+  ++search_;
+  for (const PixelCell& cell : region.cells) {
+    const int top = cell.row * PixelCell::kEdge, left = cell.col * PixelCell::kEdge;
+    const int bottom = std::min(image_.rows(), top + PixelCell::kEdge + kMargin);
+    const int right = std::min(image_.cols(), left + PixelCell::kEdge + kMargin);
+    for (int row = std::max(0, top - kMargin); row < bottom; ++row) {
+      for (int col = std::max(0, left - kMargin); col < right; ++col) {
+        const int pixel = image_.indexOf(row, col);
+        const auto at = static_cast<std::size_t>(pixel);
+        if (reached_[at] == search_ || taken_[at] != 0) continue;
+        reached_[at] = search_;
+        const Eigen::Vector3f point = image_.point(pixel);
+        if (!image_.inRange(point)) continue;
+        const RayFrame::Ray ray = region.frame.of(point);
+        if (!(ray.inverse_depth > 0.0)) continue;
+        candidates.push_back({pixel, false, ray, static_cast<double>(point.squaredNorm()), point});
+      }
+    }
+  }
+  return candidates;
+}
+
+std::vector<RegionFitter::Rival> RegionFitter::rivalsOf(const PixelRegion& region) const {
+  Eigen::AlignedBox3f box;
+  Eigen::Vector3f center = Eigen::Vector3f::Zero();
+  for (const PixelCell& cell : region.cells) {
+    box.extend(cell.point);
+    center += cell.point / static_cast<float>(region.cells.size());
+  }
+  const Plane plane = region.frame.planeOf(region.coefficients);
+  std::vector<Rival> rivals;
+  for (std::size_t k = 0; k < surfaces_.size(); ++k) {
+    const KnownSurface& surface = surfaces_[k];
+    if (k == self_ || !surface.reach.intersects(box)) continue;
+    const double cosine = plane.normal().dot(surface.normal.cast<double>());
+    const double side = surface.offset(center);
+    const bool parallel = std::abs(cosine) > kParallelCosine;
+    const double gate = rule_.test_sigmas * rule_.test_sigmas;
+    const double variance = image_.noise().expected(static_cast<double>(center.squaredNorm()),
+                                                    static_cast<double>(surface.height));
+    // A part of the same plane.
+    if (parallel && side * side < gate * variance) continue;
+    rivals.push_back({&surface, side, parallel});
+  }
+  return rivals;
+}
+
+bool RegionFitter::isBeyond(const Rival& rival, const PixelRegion& region,
+                            const Candidate& candidate) const {
+  const KnownSurface& surface = *rival.surface;
+  const double offset = surface.offset(candidate.point);
+  const double gate = rule_.test_sigmas * rule_.test_sigmas;
+  const double variance =
+      image_.noise().expected(candidate.squared_range, static_cast<double>(surface.height));
+  if (offset * offset > gate * variance || !surface.reaches(candidate.point)) return false;
+  const Eigen::Vector3d met = region.frame.meet(candidate.ray, region.coefficients);
+  const double meeting = surface.offset(met.cast<float>());
+  // Parallel surfaces have no edge: the nearer has the pixel.
+  if (rival.parallel) return std::abs(offset) < std::abs(meeting - offset);
+  const double margin = kEdgePixels * image_.pixelAngle() * met.norm();
+  return meeting * rival.side < 0.0 || std::abs(meeting) < margin;
+}
+
+void RegionFitter::markBeyond(const PixelRegion& region, std::vector<Candidate>& candidates) const {
+  for (Candidate& candidate : candidates) candidate.beyond = false;
+  for (const Rival& rival : rivalsOf(region)) {
+    for (Candidate& candidate : candidates) {
+      candidate.beyond = candidate.beyond || isBeyond(rival, region, candidate);
+    }
+  }
+}
+
+bool RegionFitter::fit(PixelRegion& region) {
+  std::vector<Candidate> candidates = candidatesOf(region);
+  const double gate = rule_.params.gate * rule_.params.gate;
+  for (int pass = 0; pass < kPasses; ++pass) {
+    if (pass % kEdgeStride == 0) markBeyond(region, candidates);
+    const InverseDepthNoise noise(image_, region.coefficients);
+    InverseDepthFit fit;
+    region.pixels.clear();
+    for (const Candidate& candidate : candidates) {
+      if (candidate.beyond) continue;
+      const RayFrame::Ray& ray = candidate.ray;
+      const double precision = 1.0 / noise.variance(candidate.squared_range, ray.inverse_depth);
+      const double residual = region.coefficients.dot(ray.row()) - ray.inverse_depth;
+      const double misfit = residual * residual * precision;
+      const double root = 1.0 - misfit / (kOutlier * kOutlier);
+      if (!(root > 0.0)) continue;
+      if (misfit <= gate) region.pixels.push_back(candidate.pixel);
+      fit.add(ray, root * root * precision);
+    }
+    if (2.0 * fit.count() < rule_.params.min_pixels || !fit.solve()) return false;
+    region.coefficients = fit.coefficients();
+    region.covariance = fit.covariance();
+  }
+  std::sort(region.pixels.begin(), region.pixels.end());
+  return true;
+}
+
+bool RegionFitter::isPlane(const PixelRegion& region) const {
+  const NarrowParams& params = rule_.params;
+  const auto count = static_cast<double>(region.pixels.size());
+  if (count < params.min_pixels) return false;
+  Spread rays;
+  for (const int pixel : region.pixels) {
+    const RayFrame::Ray ray = region.frame.of(image_.point(pixel));
+    rays.add({ray.u, ray.v});
+  }
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> extent(rays.covariance(),
+                                                              Eigen::EigenvaluesOnly);
+  if (widthOf(extent.eigenvalues()[0]) < params.min_width * image_.pixelAngle()) return false;
+  const RayFrame::Ray middle{rays.mean().x(), rays.mean().y(), 1.0};
+  const Plane plane = region.frame.planeOf(region.coefficients);
+  const Eigen::Vector3d ray = region.frame.meet(middle, region.coefficients).normalized();
+  if (std::abs(plane.normal().dot(ray)) < std::cos(rule_.max_incidence)) return false;
+  // The errors of the pixels in a patch are correlated.
+  const double patch = PixelCell::kEdge * PixelCell::kEdge * 4.0;
+  const double angle_variance = patch * image_.meanVariance(patch) *
+                                region.frame.angleVariance(region.coefficients, region.covariance);
+  if (angle_variance > params.max_uncertainty * params.max_uncertainty) return false;
+  std::vector<CellMean> cells = cellsOf(image_, region.pixels);
+  if (meanNeighbours(cells) < kLeastNeighbours) return false;
+  const Shape shape(image_, plane, std::move(cells));
+  return shape.scatter() <= params.max_scatter && !shape.turns(rule_.max_turn, rule_.test_sigmas);
+}
+
+void RegionFitter::claim(const PixelRegion& region) {
+  for (const int pixel : region.pixels) taken_[static_cast<std::size_t>(pixel)] = 1;
+}
+
+bool RegionFitter::keep(PixelRegion region) {
+  if (!isPlane(region)) return false;
+  claim(region);
+  surfaces_.push_back(surfaceOf(image_, region));
+  kept_.push_back(std::move(region));
+  return true;
+}
+
+bool RegionFitter::hasNewRivals(std::size_t kept) const {
+  const KnownSurface& own = surfaces_[known_ + kept];
+  return std::any_of(surfaces_.begin() + static_cast<std::ptrdiff_t>(known_ + kept) + 1,
+                     surfaces_.end(),
+                     [&](const KnownSurface& later) { return own.reach.intersects(later.reach); });
+}
+
+std::vector<PixelPlane> RegionFitter::refitAll() {
+  std::vector<PixelPlane> planes;
+  std::fill(taken_.begin(), taken_.end(), std::uint8_t{0});
+  for (std::size_t k = 0; k < kept_.size(); ++k) {
+    self_ = known_ + k;
+    PixelRegion& region = kept_[k];
+    if (hasNewRivals(k)) {
+      if (!fit(region) || !isPlane(region)) continue;
+      surfaces_[self_] = surfaceOf(image_, region);
+    }
+    claim(region);
+    planes.push_back({region.frame.planeOf(region.coefficients), region.pixels});
+  }
+  return planes;
+}
+
+}  // namespace opp

@@ -1,0 +1,108 @@
+// SPDX-FileCopyrightText: 2026 The opp-mapping authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "opp/narrow/narrow_params.h"
+
+#include "cloud/depth_image.h"
+#include "narrow/grow_planes.h"
+#include "narrow/inverse_depth_fit.h"
+#include "narrow/known_surface.h"
+#include "narrow/pixel_cells.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace opp {
+
+/// Variances of inverse depths on one plane.
+class InverseDepthNoise {
+ public:
+  InverseDepthNoise(const DepthImage& image, const Eigen::Vector3d& coefficients)
+      : noise_(image.noise()),
+        squared_length_(coefficients.squaredNorm()),
+        squared_height_(1.0 / squared_length_) {}
+
+  /// Of one pixel. A point at inverse depth w is (w − q·(1, u, v)) / (w |q|) off the plane with
+  /// coefficients q, which is at height 1/|q|.
+  double variance(double squared_range, double inverse_depth) const {
+    const double height = std::min(squared_range, squared_height_);
+    return inverse_depth * inverse_depth * squared_length_ *
+           noise_.expectedAt(squared_range, height);
+  }
+
+ private:
+  PointNoise noise_;
+  double squared_length_, squared_height_;
+};
+
+/// Where a plane was found, and its fit to the pixels there.
+struct PixelRegion {
+  RayFrame frame;
+  std::vector<PixelCell> cells;
+  Eigen::Vector3d coefficients;
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
+  std::vector<int> pixels = {};  ///< on the plane, ascending
+};
+
+/// What makes a region a plane.
+struct RegionRule {
+  NarrowParams params;
+  double max_incidence = 0.0;  ///< [rad]
+  double max_turn = 0.0;       ///< [rad] of a surface across its extent that is not curved
+  double test_sigmas = 0.0;
+};
+
+/// Fits planes to the pixels of regions and judges them.
+class RegionFitter {
+ public:
+  /// `image` must outlive this.
+  RegionFitter(const DepthImage& image, std::vector<KnownSurface> surfaces, RegionRule rule);
+
+  /// Fits the region's plane to the pixels of its cells and around them that no plane kept has; not
+  /// to those whose ray would meet it beyond its edge with another surface. False if they are too
+  /// few.
+  bool fit(PixelRegion& region);
+  /// Keeps the region, whose pixels then are not of others, if it is a plane.
+  bool keep(PixelRegion region);
+  /// Fits all that were kept once more, as each now knows the others.
+  std::vector<PixelPlane> refitAll();
+
+ private:
+  /// A surface near the region.
+  struct Rival {
+    const KnownSurface* surface;
+    double side;  ///< of the region [m]
+    bool parallel;
+  };
+  /// What a region's plane is fitted to.
+  struct Candidate {
+    int pixel;
+    bool beyond;  ///< an edge: of another surface
+    RayFrame::Ray ray;
+    double squared_range;
+    Eigen::Vector3f point;
+  };
+  std::vector<Candidate> candidatesOf(const PixelRegion& region);
+  std::vector<Rival> rivalsOf(const PixelRegion& region) const;
+  void markBeyond(const PixelRegion& region, std::vector<Candidate>& candidates) const;
+  bool isBeyond(const Rival& rival, const PixelRegion& region, const Candidate& candidate) const;
+  /// Whether planes were kept near this one since.
+  bool hasNewRivals(std::size_t kept) const;
+  bool isPlane(const PixelRegion& region) const;
+  void claim(const PixelRegion& region);
+
+  const DepthImage& image_;
+  std::vector<KnownSurface> surfaces_;  ///< those kept follow those known
+  std::size_t known_;
+  std::size_t self_;  ///< surface that is fitted once more
+  RegionRule rule_;
+  std::vector<PixelRegion> kept_;
+  std::vector<std::uint8_t> taken_;  ///< per pixel
+  std::vector<int> reached_;         ///< per pixel: the last search that reached it
+  int search_ = 0;
+};
+
+}  // namespace opp
