@@ -102,6 +102,12 @@ struct Scene {
     });
   }
 
+  PointCloud seenThroughNoise(test::Random& random) const {
+    PointCloud cloud = seen();
+    test::addRangeNoise(cloud, SensorModel(), random);
+    return cloud;
+  }
+
   std::vector<KnownSurface> room() const {
     std::vector<KnownSurface> surfaces;
     for (const Plane& plane : {floor, wall}) {
@@ -116,15 +122,16 @@ struct Scene {
 };
 
 DepthImage imageOf(const PointCloud& cloud, const PrimitiveParams& params) {
-  return {cloud, params.sensor, params.sampling, 0.0};
+  SensorModel sensor = params.sensor;
+  sensor.noise_correlation = 0.0;
+  return {cloud, sensor, params.sampling};
 }
 
 TEST(OpenPixels, AreThoseOfWhatIsNotKnown) {
   const PrimitiveParams params;
   test::Random random(13);
   const Scene scene(0.08, 0.6);
-  PointCloud cloud = scene.seen();
-  test::addRangeNoise(cloud, params.sensor, random);
+  const PointCloud cloud = scene.seenThroughNoise(random);
   const DepthImage image = imageOf(cloud, params);
   const auto open = openPixels(image, scene.room(), params.narrow);
   double hidden = 0.0, bar = 0.0, wrong = 0.0, others = 0.0;
@@ -174,9 +181,9 @@ TEST(OpenPixels, NothingIsOpenWhereNothingWasMeasured) {
 std::vector<PixelPlane> planesIn(const PointCloud& cloud, const std::vector<KnownSurface>& known,
                                  const PrimitiveParams& params) {
   const DepthImage image = imageOf(cloud, params);
-  return growPlanes(image, openPixels(image, known, params.narrow), known, params.narrow,
-                    params.sampling.max_incidence, params.refinement.max_turn,
-                    params.refinement.test_sigmas);
+  return growPlanes(image, openPixels(image, known, params.narrow), known,
+                    {params.narrow, params.sampling.max_incidence, params.refinement.max_turn,
+                     params.refinement.test_sigmas});
 }
 
 TEST(GrowPlanes, FindsTheSidesOfABar) {
@@ -187,8 +194,7 @@ TEST(GrowPlanes, FindsTheSidesOfABar) {
   int found = 0;
   for (int scan = 0; scan < kScans; ++scan) {
     const Scene scene(random.uniform(0.05, 0.08), random.uniform(0.6, 1.0));
-    PointCloud cloud = scene.seen();
-    test::addRangeNoise(cloud, params.sensor, random);
+    const PointCloud cloud = scene.seenThroughNoise(random);
     const auto planes = planesIn(cloud, scene.room(), params);
     EXPECT_LE(planes.size(), 2U) << "scan " << scan;
     for (const PixelPlane& plane : planes) {
@@ -205,7 +211,7 @@ TEST(GrowPlanes, FindsTheSidesOfABar) {
   EXPECT_GE(found, 2 * kScans * 9 / 10) << "of two sides each";
 }
 
-TEST(GrowPlanes, APipeHasNone) {
+TEST(GrowPlanes, APipeHasNoWideOne) {
   const PrimitiveParams params;
   test::Random random(16);
   const Scene scene(0.05, 0.0);
@@ -274,8 +280,7 @@ TEST(AddNarrowPlanes, SamplesAndNodesFollowThoseThatWere) {
   const PrimitiveParams params;
   test::Random random(18);
   const Scene scene(0.06, 0.8);
-  PointCloud cloud = scene.seen();
-  test::addRangeNoise(cloud, params.sensor, random);
+  const PointCloud cloud = scene.seenThroughNoise(random);
   Input input(scene);
   const Eigen::Vector3f first = input.samples.points[0];
   addNarrowPlanes(cloud, params, input.samples, input.graph);
@@ -304,8 +309,7 @@ TEST(AddNarrowPlanes, TakesThePlaceOfAPlaneThatItsRimsTurned) {
   const PrimitiveParams params;
   test::Random random(19);
   const Scene scene(0.06, 0.8);
-  PointCloud cloud = scene.seen();
-  test::addRangeNoise(cloud, params.sensor, random);
+  const PointCloud cloud = scene.seenThroughNoise(random);
   Input input(scene);
   // A side of the bar as patches of 2 cm see it, 8° off.
   const auto side = std::max_element(

@@ -27,7 +27,7 @@ float sampleVariance(const OrientedCloud& cloud, std::size_t sample, const Senso
 }
 
 double effectiveCount(double count, const SensorModel& sensor) {
-  return count > 0.0 ? count / (1.0 + (count - 1.0) * sensor.noise_correlation) : 0.0;
+  return count > 0.0 ? 1.0 / sensor.meanVariance(count) : 0.0;
 }
 
 std::vector<PlaneSamples> planeSamples(const ScanFeatures& scan, const SensorModel& sensor) {

@@ -40,10 +40,7 @@ double neighborAngle(const PointCloud& cloud, const SensorModel& sensor, int row
   const int rows = cloud.rows - row_step;
   const int cols = cloud.cols - col_step;
   if (rows < 1 || cols < 1) return 0.0;
-  const auto inRange = [&](const Eigen::Vector3d& point) {
-    const double range = point.norm();
-    return range >= sensor.min_range && range <= sensor.max_range;
-  };
+  const RangeGate gate(sensor.min_range, sensor.max_range);
   const long long total = static_cast<long long>(rows) * cols;
   const long long stride = std::max(1LL, total / kSamples);
   std::vector<double> angles;
@@ -52,10 +49,11 @@ double neighborAngle(const PointCloud& cloud, const SensorModel& sensor, int row
     const std::size_t beside =
         at + static_cast<std::size_t>(row_step) * static_cast<std::size_t>(cloud.cols) +
         static_cast<std::size_t>(col_step);
-    const Eigen::Vector3d a = (cloud.points[at] - cloud.viewpoint).cast<double>();
-    const Eigen::Vector3d b = (cloud.points[beside] - cloud.viewpoint).cast<double>();
-    if (!inRange(a) || !inRange(b)) continue;
-    angles.push_back(std::atan2(a.cross(b).norm(), a.dot(b)));
+    const Eigen::Vector3f a = cloud.points[at] - cloud.viewpoint;
+    const Eigen::Vector3f b = cloud.points[beside] - cloud.viewpoint;
+    if (!gate.contains(a) || !gate.contains(b)) continue;
+    const Eigen::Vector3d ray = a.cast<double>(), next = b.cast<double>();
+    angles.push_back(std::atan2(ray.cross(next).norm(), ray.dot(next)));
   }
   if (angles.empty()) return 0.0;
   const auto middle = angles.begin() + static_cast<std::ptrdiff_t>(angles.size() / 2);
@@ -70,17 +68,16 @@ GridAngles gridAngles(const PointCloud& cloud, const SensorModel& sensor) {
 }
 
 DepthImage::DepthImage(const PointCloud& cloud, const SensorModel& sensor,
-                       const SamplingParams& params, double correlation)
-    : DepthImage(cloud, sensor, params, correlation, gridAngles(cloud, sensor)) {}
+                       const SamplingParams& params)
+    : DepthImage(cloud, sensor, params, gridAngles(cloud, sensor)) {}
 
 DepthImage::DepthImage(const PointCloud& cloud, const SensorModel& sensor,
-                       const SamplingParams& params, double correlation, const GridAngles& angles)
+                       const SamplingParams& params, const GridAngles& angles)
     : cloud_(cloud),
-      least_(static_cast<float>(sensor.min_range * sensor.min_range)),
-      most_(static_cast<float>(sensor.farthestSurface() * sensor.farthestSurface())),
+      sensor_(sensor),
+      gate_(sensor.min_range, sensor.farthestSurface()),
       pixel_angle_(std::min(angles.row, angles.col)),
       solid_angle_(angles.row * angles.col),
-      correlation_(correlation),
       noise_(withRounding(sensor, cloud), params, pixel_angle_) {}
 
 bool DepthImage::jumps(float range_a, float range_b) const {

@@ -7,6 +7,7 @@
 #include "opp/geometry/point_cloud.h"
 
 #include "cloud/point_noise.h"
+#include "cloud/range_gate.h"
 
 #include <Eigen/Core>
 
@@ -26,9 +27,8 @@ GridAngles gridAngles(const PointCloud& cloud, const SensorModel& sensor);
 /// An organized cloud as its sensor saw it: points about the viewpoint, and their noise.
 class DepthImage {
  public:
-  /// `cloud` must outlive this. `correlation`: of the errors of neighbouring pixels.
-  DepthImage(const PointCloud& cloud, const SensorModel& sensor, const SamplingParams& params,
-             double correlation);
+  /// `cloud` must outlive this.
+  DepthImage(const PointCloud& cloud, const SensorModel& sensor, const SamplingParams& params);
 
   int rows() const { return cloud_.rows; }
   int cols() const { return cloud_.cols; }
@@ -37,29 +37,25 @@ class DepthImage {
   Eigen::Vector3f point(int pixel) const {
     return cloud_.points[static_cast<std::size_t>(pixel)] - cloud_.viewpoint;
   }
-  /// False for points that are not finite: they compare false.
-  bool inRange(const Eigen::Vector3f& point) const {
-    const float squared = point.squaredNorm();
-    return (squared >= least_) & (squared <= most_);
-  }
+  bool inRange(const Eigen::Vector3f& point) const { return gate_.contains(point); }
   /// The closer of the angles between neighbouring rays [rad].
   double pixelAngle() const { return pixel_angle_; }
   /// Of a pixel [sr].
   double solidAngle() const { return solid_angle_; }
   const PointNoise& noise() const { return noise_; }
-  /// Variance of the mean of `count` neighbouring pixels over that of one.
-  double meanVariance(double count) const { return (1.0 + (count - 1.0) * correlation_) / count; }
+  const SensorModel& sensor() const { return sensor_; }
   /// Between neighbours of one surface ranges differ by no more than noise and a surface seen at
   /// 80° make them.
   bool jumps(float range_a, float range_b) const;
 
  private:
   DepthImage(const PointCloud& cloud, const SensorModel& sensor, const SamplingParams& params,
-             double correlation, const GridAngles& angles);
+             const GridAngles& angles);
 
   const PointCloud& cloud_;
-  float least_, most_;  ///< squared ranges [m²]
-  double pixel_angle_, solid_angle_, correlation_;
+  SensorModel sensor_;
+  RangeGate gate_;
+  double pixel_angle_, solid_angle_;
   PointNoise noise_;
 };
 

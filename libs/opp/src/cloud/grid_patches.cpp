@@ -3,29 +3,13 @@
 #include "cloud/grid_patches.h"
 
 #include "cloud/depth_image.h"
+#include "cloud/range_gate.h"
 
 #include <algorithm>
 #include <cmath>
 
 namespace opp {
 namespace {
-
-struct RangeGate {
-  Eigen::Vector3f viewpoint;
-  float min_squared;
-  float max_squared;
-
-  RangeGate(const PointCloud& cloud, const SensorModel& sensor)
-      : viewpoint(cloud.viewpoint),
-        min_squared(static_cast<float>(sensor.min_range * sensor.min_range)),
-        max_squared(static_cast<float>(sensor.max_range * sensor.max_range)) {}
-
-  /// False for points that are not finite: they compare false.
-  bool contains(const Eigen::Vector3f& point) const {
-    const float squared = (point - viewpoint).squaredNorm();
-    return squared >= min_squared && squared <= max_squared;
-  }
-};
 
 /// Amid the points, where sums of coordinates lose the fewest digits.
 Eigen::Vector3d roughCenter(const PointCloud& cloud, const RangeGate& gate) {
@@ -34,7 +18,7 @@ Eigen::Vector3d roughCenter(const PointCloud& cloud, const RangeGate& gate) {
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   double count = 0.0;
   for (std::size_t i = 0; i < cloud.size(); i += stride) {
-    if (!gate.contains(cloud.points[i])) continue;
+    if (!gate.contains(cloud.points[i] - cloud.viewpoint)) continue;
     sum += cloud.points[i].cast<double>();
     count += 1.0;
   }
@@ -67,7 +51,7 @@ MomentSums blockSums(const PointCloud& cloud, const RangeGate& gate, const Eigen
         cloud.points.data() + static_cast<std::ptrdiff_t>(row) * cloud.cols;
     for (int col = col_begin; col < col_end; ++col) {
       const Eigen::Vector3f& point = line[col];
-      if (!gate.contains(point)) continue;
+      if (!gate.contains(point - cloud.viewpoint)) continue;
       if (n == 0.0F) first = point;
       const Eigen::Vector3f d = point - first;
       n += 1.0F, x += d.x(), y += d.y(), z += d.z();
@@ -84,7 +68,7 @@ MomentSums blockSums(const PointCloud& cloud, const RangeGate& gate, const Eigen
 
 GridPatches makeGridPatches(const PointCloud& cloud, const SensorModel& sensor,
                             std::size_t target) {
-  const RangeGate gate(cloud, sensor);
+  const RangeGate gate(sensor.min_range, sensor.max_range);
   const GridAngles angles = gridAngles(cloud, sensor);
   const BlockShape shape = blockShape(cloud, angles, target);
   GridPatches grid;

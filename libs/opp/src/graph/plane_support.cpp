@@ -4,7 +4,8 @@
 
 #include "opp/graph/union_find.h"
 
-#include <Eigen/Eigenvalues>
+#include "geometry/planar_spread.h"
+#include "geometry/visit_neighbours.h"
 
 #include <algorithm>
 #include <cmath>
@@ -16,11 +17,11 @@ namespace {
 
 /// A cell of the plane's grid; ordered row by row.
 struct Cell {
-  std::int64_t row, column;
+  std::int64_t row, col;
   bool operator<(const Cell& other) const {
-    return row != other.row ? row < other.row : column < other.column;
+    return row != other.row ? row < other.row : col < other.col;
   }
-  bool operator==(const Cell& other) const { return row == other.row && column == other.column; }
+  bool operator==(const Cell& other) const { return row == other.row && col == other.col; }
 };
 
 /// A sample in its cell.
@@ -32,46 +33,6 @@ struct Place {
 Eigen::Vector3d pointOf(const OrientedCloud& cloud, int i) {
   return cloud.points[static_cast<std::size_t>(i)].cast<double>();
 }
-
-/// Joins each cell of the sorted list with its neighbours in this and the previous row.
-UnionFind connect(const std::vector<Cell>& cells) {
-  UnionFind sets(cells.size());
-  std::size_t above = 0;  // the first cell that is not before the neighbour above on the left
-  for (std::size_t i = 0; i < cells.size(); ++i) {
-    const Cell& cell = cells[i];
-    if (i > 0 && cells[i - 1].row == cell.row && cells[i - 1].column + 1 == cell.column) {
-      sets.join(i - 1, i);
-    }
-    const Cell above_left{cell.row - 1, cell.column - 1};
-    while (cells[above] < above_left) ++above;
-    for (std::size_t k = above; cells[k].row < cell.row && cells[k].column <= cell.column + 1;
-         ++k) {
-      sets.join(k, i);
-    }
-  }
-  return sets;
-}
-
-/// Second moments of plane coordinates.
-struct Spread {
-  double count = 0.0;
-  Eigen::Vector2d sum = Eigen::Vector2d::Zero();
-  Eigen::Matrix2d squares = Eigen::Matrix2d::Zero();  ///< lower triangle
-
-  void add(double x, double y) {
-    count += 1.0;
-    sum[0] += x, sum[1] += y;
-    squares(0, 0) += x * x, squares(1, 0) += y * x, squares(1, 1) += y * y;
-  }
-  /// A rectangle of width w has variance w²/12.
-  double width() const {
-    const Eigen::Vector2d mean = sum / count;
-    const Eigen::Matrix2d covariance = squares / count - mean * mean.transpose();
-    // Reads the lower triangle.
-    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> eigen(covariance, Eigen::EigenvaluesOnly);
-    return std::sqrt(12.0 * std::max(0.0, eigen.eigenvalues()[0]));
-  }
-};
 
 /// Coordinates along the common line, in units of `cell`, of the samples within `reach` of it:
 /// sorted, each cell once.
@@ -140,8 +101,9 @@ SupportPatch largestPatch(const OrientedCloud& cloud, const Plane& plane,
   for (const Place& place : places) {
     if (cells.empty() || !(cells.back() == place.cell)) cells.push_back(place.cell);
   }
-  UnionFind sets = connect(cells);
-  std::vector<Spread> spreads(cells.size());
+  UnionFind sets(cells.size());
+  visitNeighbours(cells, [&](std::size_t a, std::size_t b) { sets.join(a, b); });
+  std::vector<PlanarSpread> spreads(cells.size());
   std::size_t cell = 0;
   for (const Place& place : places) {
     if (!(cells[cell] == place.cell)) ++cell;
@@ -149,8 +111,8 @@ SupportPatch largestPatch(const OrientedCloud& cloud, const Plane& plane,
   }
   const auto largest =
       std::max_element(spreads.begin(), spreads.end(),
-                       [](const Spread& a, const Spread& b) { return a.count < b.count; });
-  return {largest->count, largest->width() / extent};
+                       [](const auto& a, const auto& b) { return a.count() < b.count(); });
+  return {largest->count(), largest->widths()[0] / extent};
 }
 
 double commonEdgeLength(const OrientedCloud& cloud, const EdgeSide& a, const EdgeSide& b,

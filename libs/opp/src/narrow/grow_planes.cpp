@@ -3,6 +3,7 @@
 #include "narrow/grow_planes.h"
 
 #include "narrow/inverse_depth_fit.h"
+#include "narrow/inverse_depth_noise.h"
 #include "narrow/pixel_cells.h"
 #include "narrow/pixel_region.h"
 
@@ -67,7 +68,8 @@ class PlaneGrower {
   double varianceOf(const PixelCell& cell, const RayFrame::Ray& ray,
                     const InverseDepthNoise& noise) const {
     const auto range = static_cast<double>(cell.range);
-    return noise.variance(range * range, ray.inverse_depth) * image_.meanVariance(cell.count);
+    return noise.variance(range * range, ray.inverse_depth) *
+           image_.sensor().meanVariance(cell.count);
   }
 
   /// Plane through a cell and its neighbours, in one or more passes; the misfit per degree of
@@ -78,7 +80,7 @@ class PlaneGrower {
     growth.coefficients = {1.0 / static_cast<double>(center.range), 0.0, 0.0};
     InverseDepthFit fit;
     for (int pass = 0; pass < passes; ++pass) {
-      const InverseDepthNoise noise(image_, growth.coefficients);
+      const InverseDepthNoise noise(image_.noise(), growth.coefficients);
       fit = {};
       cells_.visitAround(center, 1, [&](int other) {
         const PixelCell& cell = cells_[other];
@@ -116,7 +118,7 @@ class PlaneGrower {
   void spread(int seed, bool rough, Growth& growth) {
     growth.cells.clear();
     ++search_;
-    InverseDepthNoise noise(image_, growth.coefficients);
+    InverseDepthNoise noise(image_.noise(), growth.coefficients);
     InverseDepthFit fit;
     double squares = 0.0;
     double next_fit = kFirstFit;
@@ -138,7 +140,7 @@ class PlaneGrower {
       if (!rough || fit.count() < next_fit) return;
       next_fit = kGrowth * fit.count();
       take(fit, growth);
-      noise = InverseDepthNoise(image_, growth.coefficients);
+      noise = InverseDepthNoise(image_.noise(), growth.coefficients);
     };
     add(seed);
     for (std::size_t next = 0; next < growth.cells.size(); ++next) {
@@ -209,9 +211,8 @@ class PlaneGrower {
 
 std::vector<PixelPlane> growPlanes(const DepthImage& image, const std::vector<std::uint8_t>& open,
                                    const std::vector<KnownSurface>& surfaces,
-                                   const NarrowParams& params, double max_incidence,
-                                   double max_turn, double test_sigmas) {
-  return PlaneGrower(image, open, surfaces, {params, max_incidence, max_turn, test_sigmas}).grow();
+                                   const RegionRule& rule) {
+  return PlaneGrower(image, open, surfaces, rule).grow();
 }
 
 }  // namespace opp

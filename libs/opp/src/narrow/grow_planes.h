@@ -19,6 +19,14 @@ struct PixelPlane {
   std::vector<int> pixels;  ///< ascending
 };
 
+/// What makes pixels a plane.
+struct RegionRule {
+  NarrowParams params;
+  double max_incidence = 0.0;  ///< [rad]
+  double max_turn = 0.0;       ///< [rad] of a surface across its extent that is not curved
+  double test_sigmas = 0.0;
+};
+
 /// Planes of the open pixels (one flag each). They grow from where neighbouring cells are flattest,
 /// as far as cells lie on them within their noise and what is not yet known of the plane; then they
 /// are fitted to all pixels on them, open or not, as far as their edges with other surfaces, known
@@ -26,7 +34,6 @@ struct PixelPlane {
 /// + open cells × planes).
 std::vector<PixelPlane> growPlanes(const DepthImage& image, const std::vector<std::uint8_t>& open,
                                    const std::vector<KnownSurface>& surfaces,
-                                   const NarrowParams& params, double max_incidence,
-                                   double max_turn, double test_sigmas);
+                                   const RegionRule& rule);
 
 }  // namespace opp

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "cloud/point_noise.h"
+
 #include <Eigen/Geometry>
 
 namespace opp {
@@ -15,6 +17,10 @@ struct KnownSurface {
   bool reaches(const Eigen::Vector3f& point) const { return reach.contains(point); }
   double offset(const Eigen::Vector3f& point) const {
     return static_cast<double>(normal.dot(point) - height);
+  }
+  /// Of the offset of a point on it that is measured at a range [m²].
+  double variance(const PointNoise& noise, double squared_range) const {
+    return noise.expected(squared_range, static_cast<double>(height));
   }
 };
 

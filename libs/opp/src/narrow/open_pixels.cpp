@@ -72,8 +72,7 @@ class OpenPixelFinder {
   }
 
   double varianceAt(const KnownSurface& surface, const Eigen::Vector3f& point) const {
-    return image_.noise().expected(static_cast<double>(point.squaredNorm()),
-                                   static_cast<double>(surface.height));
+    return surface.variance(image_.noise(), static_cast<double>(point.squaredNorm()));
   }
 
   /// Squared offset over its variance; infinite where the surface cannot be.
@@ -139,7 +138,7 @@ class OpenPixelFinder {
     const double mean = static_cast<double>(sum / count), most = static_cast<double>(farthest);
     return most * most <= kBlockSigmas * kBlockSigmas * variance &&
            mean * mean <=
-               squared_gate_ * variance * image_.meanVariance(static_cast<double>(count));
+               squared_gate_ * variance * image_.sensor().meanVariance(static_cast<double>(count));
   }
 
   void findSurfacesAround(int block) {
@@ -182,7 +181,7 @@ class OpenPixelFinder {
       const Cell& cell = cells[static_cast<std::size_t>(block.cell[i])];
       if (cell.count == 0.0) continue;
       const double mean = cell.ratios / cell.count;
-      if (mean * mean > squared_gate_ * image_.meanVariance(cell.count)) {
+      if (mean * mean > squared_gate_ * image_.sensor().meanVariance(cell.count)) {
         open_[static_cast<std::size_t>(block.pixel[i])] = 1;
       }
     }

@@ -2,8 +2,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "narrow/pixel_region.h"
 
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
+#include "geometry/planar_spread.h"
+#include "geometry/surface_turn.h"
+#include "geometry/visit_neighbours.h"
+#include "narrow/inverse_depth_noise.h"
+#include "narrow/pixel_blocks.h"
 
 #include <algorithm>
 #include <cmath>
@@ -28,82 +31,21 @@ constexpr double kLeastNeighbours = 3.5;
 /// Surfaces that are as parallel as this have no edge with each other.
 constexpr double kParallelCosine = 0.97;
 
-/// Means of the pixels in cells, of one plane.
-struct CellMean {
-  Eigen::Vector3d point = Eigen::Vector3d::Zero();
-  double count = 0.0;
-  int row = 0, col = 0;
-};
-
-std::vector<CellMean> cellsOf(const DepthImage& image, const std::vector<int>& pixels) {
-  struct Entry {
-    int row, col, pixel;
-  };
-  std::vector<Entry> entries;
-  entries.reserve(pixels.size());
-  for (const int pixel : pixels) {
-    entries.push_back(
-        {pixel / image.cols() / PixelCell::kEdge, pixel % image.cols() / PixelCell::kEdge, pixel});
-  }
-  std::sort(entries.begin(), entries.end(), [](const Entry& a, const Entry& b) {
-    return a.row != b.row ? a.row < b.row : a.col != b.col ? a.col < b.col : a.pixel < b.pixel;
-  });
-  std::vector<CellMean> cells;
-  for (const Entry& entry : entries) {
-    if (cells.empty() || cells.back().row != entry.row || cells.back().col != entry.col) {
-      cells.push_back({Eigen::Vector3d::Zero(), 0.0, entry.row, entry.col});
-    }
-    cells.back().point += image.point(entry.pixel).cast<double>();
-    cells.back().count += 1.0;
-  }
-  for (CellMean& cell : cells) cell.point /= cell.count;
-  return cells;
-}
-
-/// Neighbours of a cell among the others, which are sorted by row and column.
-double meanNeighbours(const std::vector<CellMean>& cells) {
+double meanNeighbours(const std::vector<PixelBlock>& cells) {
   double pairs = 0.0;
-  std::size_t above = 0;  // the first cell that is not before the neighbour above on the left
-  for (std::size_t i = 0; i < cells.size(); ++i) {
-    const CellMean& cell = cells[i];
-    if (i > 0 && cells[i - 1].row == cell.row && cells[i - 1].col + 1 == cell.col) pairs += 2.0;
-    const auto before = [&](const CellMean& other) {
-      return other.row < cell.row - 1 || (other.row == cell.row - 1 && other.col < cell.col - 1);
-    };
-    while (before(cells[above])) ++above;
-    for (std::size_t k = above; cells[k].row < cell.row && cells[k].col <= cell.col + 1; ++k) {
-      pairs += 2.0;
-    }
-  }
+  visitNeighbours(cells, [&](std::size_t, std::size_t) { pairs += 2.0; });
   return pairs / static_cast<double>(cells.size());
 }
-
-/// Second moments of two coordinates.
-struct Spread {
-  Eigen::Vector2d sum = Eigen::Vector2d::Zero();
-  Eigen::Matrix2d squares = Eigen::Matrix2d::Zero();
-  double count = 0.0;
-  void add(const Eigen::Vector2d& x) {
-    sum += x;
-    squares += x * x.transpose();
-    count += 1.0;
-  }
-  Eigen::Vector2d mean() const { return sum / count; }
-  Eigen::Matrix2d covariance() const { return squares / count - mean() * mean().transpose(); }
-};
-
-/// A rectangle of width w has variance w²/12.
-double widthOf(double variance) { return std::sqrt(12.0 * std::max(0.0, variance)); }
 
 /// Cells about a plane through them.
 class Shape {
  public:
-  Shape(const DepthImage& image, const Plane& plane, std::vector<CellMean> cells)
+  Shape(const DepthImage& image, const Plane& plane, std::vector<PixelBlock> cells)
       : plane_(plane), cells_(std::move(cells)) {
     const double height = plane.d();
-    for (const CellMean& cell : cells_) {
+    for (const PixelBlock& cell : cells_) {
       variances_.push_back(image.noise().expected(cell.point.squaredNorm(), height) *
-                           image.meanVariance(cell.count));
+                           image.sensor().meanVariance(cell.count));
     }
   }
 
@@ -121,39 +63,28 @@ class Shape {
   /// times what noise could feign.
   bool turns(double most, double sigmas) const {
     const Eigen::Matrix<double, 3, 2> tangents = tangentBasis(plane_.normal());
-    Spread spread;
-    for (const CellMean& cell : cells_) spread.add(tangents.transpose() * cell.point);
-    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes(spread.covariance());
-    const Eigen::Vector2d widths(widthOf(axes.eigenvalues()[0]), widthOf(axes.eigenvalues()[1]));
-    if (!(widths[0] > 0.0)) return true;
-    // The height is a quadratic form of the place, in widths.
-    using Vector6 = Eigen::Matrix<double, 6, 1>;
-    using Matrix6 = Eigen::Matrix<double, 6, 6>;
-    Matrix6 known = Matrix6::Zero();
-    Vector6 sums = Vector6::Zero();
+    PlanarSpread spread;
+    for (const PixelBlock& cell : cells_) {
+      spread.add(tangents.col(0).dot(cell.point), tangents.col(1).dot(cell.point));
+    }
+    const PlanarSpread::Axes axes = spread.axes();
+    if (!(axes.widths[0] > 0.0)) return true;
+    SurfaceTurn surface(axes.widths);
     for (std::size_t i = 0; i < cells_.size(); ++i) {
       const Eigen::Vector2d place = tangents.transpose() * cells_[i].point - spread.mean();
-      const Eigen::Vector2d t = (axes.eigenvectors().transpose() * place).cwiseQuotient(widths);
-      Vector6 row;
-      row << 1.0, t.x(), t.y(), 0.5 * t.x() * t.x(), t.x() * t.y(), 0.5 * t.y() * t.y();
-      known += row * row.transpose() / variances_[i];
-      sums += row * (plane_.signedDistance(cells_[i].point) / variances_[i]);
+      surface.add(axes.directions.transpose() * place, plane_.signedDistance(cells_[i].point),
+                  variances_[i]);
     }
-    const Eigen::LDLT<Matrix6> solver(known);
-    const Vector6 form = solver.solve(sums);
-    for (const int k : {0, 1}) {
-      const int at = k == 0 ? 3 : 5;
-      const double turn = std::abs(form[at]) / widths[k];
-      const double error =
-          std::sqrt(std::max(0.0, solver.solve(Vector6::Unit(at))[at])) / widths[k];
-      if (turn > most && turn > sigmas * error) return true;
-    }
-    return false;
+    const SurfaceTurn::Turns turns = surface.turns();
+    const auto isSure = [&](const SurfaceTurn::Turn& turn) {
+      return turn.angle > most && turn.angle > sigmas * turn.error;
+    };
+    return isSure(turns.first) || isSure(turns.second);
   }
 
  private:
   const Plane& plane_;
-  std::vector<CellMean> cells_;
+  std::vector<PixelBlock> cells_;
   std::vector<double> variances_;  ///< of the cells' heights
 };
 
@@ -222,8 +153,8 @@ std::vector<RegionFitter::Rival> RegionFitter::rivalsOf(const PixelRegion& regio
     const double side = surface.offset(center);
     const bool parallel = std::abs(cosine) > kParallelCosine;
     const double gate = rule_.test_sigmas * rule_.test_sigmas;
-    const double variance = image_.noise().expected(static_cast<double>(center.squaredNorm()),
-                                                    static_cast<double>(surface.height));
+    const double variance =
+        surface.variance(image_.noise(), static_cast<double>(center.squaredNorm()));
     // A part of the same plane.
     if (parallel && side * side < gate * variance) continue;
     rivals.push_back({&surface, side, parallel});
@@ -236,8 +167,7 @@ bool RegionFitter::isBeyond(const Rival& rival, const PixelRegion& region,
   const KnownSurface& surface = *rival.surface;
   const double offset = surface.offset(candidate.point);
   const double gate = rule_.test_sigmas * rule_.test_sigmas;
-  const double variance =
-      image_.noise().expected(candidate.squared_range, static_cast<double>(surface.height));
+  const double variance = surface.variance(image_.noise(), candidate.squared_range);
   if (offset * offset > gate * variance || !surface.reaches(candidate.point)) return false;
   const Eigen::Vector3d met = region.frame.meet(candidate.ray, region.coefficients);
   const double meeting = surface.offset(met.cast<float>());
@@ -261,7 +191,7 @@ bool RegionFitter::fit(PixelRegion& region) {
   const double gate = rule_.params.gate * rule_.params.gate;
   for (int pass = 0; pass < kPasses; ++pass) {
     if (pass % kEdgeStride == 0) markBeyond(region, candidates);
-    const InverseDepthNoise noise(image_, region.coefficients);
+    const InverseDepthNoise noise(image_.noise(), region.coefficients);
     InverseDepthFit fit;
     region.pixels.clear();
     for (const Candidate& candidate : candidates) {
@@ -287,24 +217,22 @@ bool RegionFitter::isPlane(const PixelRegion& region) const {
   const NarrowParams& params = rule_.params;
   const auto count = static_cast<double>(region.pixels.size());
   if (count < params.min_pixels) return false;
-  Spread rays;
+  PlanarSpread rays;
   for (const int pixel : region.pixels) {
     const RayFrame::Ray ray = region.frame.of(image_.point(pixel));
-    rays.add({ray.u, ray.v});
+    rays.add(ray.u, ray.v);
   }
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> extent(rays.covariance(),
-                                                              Eigen::EigenvaluesOnly);
-  if (widthOf(extent.eigenvalues()[0]) < params.min_width * image_.pixelAngle()) return false;
+  if (rays.widths()[0] < params.min_width * image_.pixelAngle()) return false;
   const RayFrame::Ray middle{rays.mean().x(), rays.mean().y(), 1.0};
   const Plane plane = region.frame.planeOf(region.coefficients);
   const Eigen::Vector3d ray = region.frame.meet(middle, region.coefficients).normalized();
   if (std::abs(plane.normal().dot(ray)) < std::cos(rule_.max_incidence)) return false;
   // The errors of the pixels in a patch are correlated.
-  const double patch = PixelCell::kEdge * PixelCell::kEdge * 4.0;
-  const double angle_variance = patch * image_.meanVariance(patch) *
+  constexpr double kPatch = kPatchEdge * kPatchEdge;
+  const double angle_variance = kPatch * image_.sensor().meanVariance(kPatch) *
                                 region.frame.angleVariance(region.coefficients, region.covariance);
   if (angle_variance > params.max_uncertainty * params.max_uncertainty) return false;
-  std::vector<CellMean> cells = cellsOf(image_, region.pixels);
+  std::vector<PixelBlock> cells = pixelBlocks(image_, region.pixels, PixelCell::kEdge);
   if (meanNeighbours(cells) < kLeastNeighbours) return false;
   const Shape shape(image_, plane, std::move(cells));
   return shape.scatter() <= params.max_scatter && !shape.turns(rule_.max_turn, rule_.test_sigmas);

@@ -2,41 +2,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "opp/narrow/narrow_params.h"
-
 #include "cloud/depth_image.h"
 #include "narrow/grow_planes.h"
 #include "narrow/inverse_depth_fit.h"
 #include "narrow/known_surface.h"
 #include "narrow/pixel_cells.h"
 
-#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
 
 namespace opp {
-
-/// Variances of inverse depths on one plane.
-class InverseDepthNoise {
- public:
-  InverseDepthNoise(const DepthImage& image, const Eigen::Vector3d& coefficients)
-      : noise_(image.noise()),
-        squared_length_(coefficients.squaredNorm()),
-        squared_height_(1.0 / squared_length_) {}
-
-  /// Of one pixel. A point at inverse depth w is (w − q·(1, u, v)) / (w |q|) off the plane with
-  /// coefficients q, which is at height 1/|q|.
-  double variance(double squared_range, double inverse_depth) const {
-    const double height = std::min(squared_range, squared_height_);
-    return inverse_depth * inverse_depth * squared_length_ *
-           noise_.expectedAt(squared_range, height);
-  }
-
- private:
-  PointNoise noise_;
-  double squared_length_, squared_height_;
-};
 
 /// Where a plane was found, and its fit to the pixels there.
 struct PixelRegion {
@@ -45,14 +21,6 @@ struct PixelRegion {
   Eigen::Vector3d coefficients;
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
   std::vector<int> pixels = {};  ///< on the plane, ascending
-};
-
-/// What makes a region a plane.
-struct RegionRule {
-  NarrowParams params;
-  double max_incidence = 0.0;  ///< [rad]
-  double max_turn = 0.0;       ///< [rad] of a surface across its extent that is not curved
-  double test_sigmas = 0.0;
 };
 
 /// Fits planes to the pixels of regions and judges them.

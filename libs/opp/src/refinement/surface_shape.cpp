@@ -2,14 +2,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "refinement/surface_shape.h"
 
+#include "geometry/planar_spread.h"
+#include "geometry/surface_turn.h"
 #include "refinement/plane_bookkeeping.h"
 
 #include <Eigen/Eigenvalues>
-#include <Eigen/LU>
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <utility>
 
 namespace opp {
@@ -70,36 +70,23 @@ bool turns(const TurnSums& sums, const RefinementParams& params) {
 bool placesDeny(const std::vector<WeightedSample>& samples,
                 const std::vector<std::uint32_t>& members, const PlaneFit& fit,
                 const RefinementParams& params) {
-  using Vector6 = Eigen::Matrix<double, 6, 1>;
-  using Matrix6 = Eigen::Matrix<double, 6, 6>;
   const Eigen::Matrix<double, 3, 2> tangents = tangentBasis(fit.plane.normal());
   const Eigen::Vector3d mean = fit.moments.mean();
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes(
       tangents.transpose() * fit.moments.scatter() * tangents / fit.moments.weight());
-  const Eigen::Vector2d widths = (12.0 * axes.eigenvalues().cwiseMax(0.0)).cwiseSqrt();
+  const Eigen::Vector2d widths = PlanarSpread::widthsOf(axes.eigenvalues());
   if (!(widths.minCoeff() > 0.0)) return false;
   const Eigen::Matrix<double, 3, 2> directions = tangents * axes.eigenvectors();
-  // Height over the plane as a quadratic form of the place in units of the widths.
-  Matrix6 known = Matrix6::Zero();
-  Vector6 sums = Vector6::Zero();
+  SurfaceTurn surface(widths);
   for (const std::uint32_t i : members) {
-    const Eigen::Vector3d step = samples[i].point - mean;
-    const Eigen::Vector2d t = (directions.transpose() * step).cwiseQuotient(widths);
-    Vector6 row;
-    row << 1.0, t.x(), t.y(), 0.5 * t.x() * t.x(), t.x() * t.y(), 0.5 * t.y() * t.y();
-    known += row * row.transpose() / samples[i].variance;
-    sums += row * (fit.plane.signedDistance(samples[i].point) / samples[i].variance);
+    surface.add(directions.transpose() * (samples[i].point - mean),
+                fit.plane.signedDistance(samples[i].point), samples[i].variance);
   }
-  const Matrix6 covariance = known.inverse();
-  if (!covariance.allFinite()) return false;
-  const Vector6 form = covariance * sums;
-  for (int k = 0; k < 2; ++k) {
-    const int at = k == 0 ? 3 : 5;
-    const double turn = std::abs(form[at]) / widths[k];
-    const double error = std::sqrt(std::max(0.0, covariance(at, at))) / widths[k];
-    if (turn + params.test_sigmas * error > params.max_turn) return false;
-  }
-  return true;
+  const SurfaceTurn::Turns turns = surface.turns();
+  const auto isSmall = [&](const SurfaceTurn::Turn& turn) {
+    return turn.angle + params.test_sigmas * turn.error <= params.max_turn;
+  };
+  return isSmall(turns.first) && isSmall(turns.second);
 }
 
 /// Samples of one plane, in two layers.

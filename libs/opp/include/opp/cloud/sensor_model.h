@@ -47,9 +47,14 @@ struct SensorModel {
   /// changes by its standard deviation over a tenth of the range, a quarter of what a camera sees.
   double distortionSlope(double range) const { return distortion_quadratic * range / 0.1; }
 
+  /// Variance of the mean of `count` ≥ 1 neighbouring raw points over that of one.
+  double meanVariance(double count) const {
+    return (1.0 + (count - 1.0) * noise_correlation) / count;
+  }
+
   /// Standard deviation of the mean of `count` ≥ 1 neighbouring raw points of deviation `sigma`.
   double meanSigma(double sigma, double count) const {
-    return sigma * std::sqrt((1.0 + (count - 1.0) * noise_correlation) / count);
+    return sigma * std::sqrt(meanVariance(count));
   }
 
   /// The model for a cloud that shows a correlation of `measured`; < 0: it shows none.
