@@ -110,12 +110,10 @@ struct Scene {
 
   std::vector<KnownSurface> room() const {
     std::vector<KnownSurface> surfaces;
+    const Eigen::Vector3f far = Eigen::Vector3f::Constant(10.0F);
+    const PointNoise noise({}, {}, 0.002);
     for (const Plane& plane : {floor, wall}) {
-      KnownSurface surface;
-      surface.normal = plane.normal().cast<float>();
-      surface.height = static_cast<float>(-plane.d());
-      surface.reach = {Eigen::Vector3f::Constant(-10.0F), Eigen::Vector3f::Constant(10.0F)};
-      surfaces.push_back(surface);
+      surfaces.emplace_back(plane, Eigen::AlignedBox3f(-far, far), noise);
     }
     return surfaces;
   }
@@ -127,13 +125,17 @@ DepthImage imageOf(const PointCloud& cloud, const PrimitiveParams& params) {
   return {cloud, sensor, params.sampling};
 }
 
+GridPatches gridOf(const PointCloud& cloud, const PrimitiveParams& params) {
+  return makeGridPatches(cloud, params.sensor, cloud.size() / 16);
+}
+
 TEST(OpenPixels, AreThoseOfWhatIsNotKnown) {
   const PrimitiveParams params;
   test::Random random(13);
   const Scene scene(0.08, 0.6);
   const PointCloud cloud = scene.seenThroughNoise(random);
   const DepthImage image = imageOf(cloud, params);
-  const auto open = openPixels(image, scene.room(), params.narrow);
+  const auto open = openPixels(image, gridOf(cloud, params), scene.room(), params.narrow);
   double hidden = 0.0, bar = 0.0, wrong = 0.0, others = 0.0;
   for (std::size_t i = 0; i < cloud.size(); ++i) {
     const bool on_bar = cloud.points[i].x() < 2.0F && cloud.points[i].z() > -0.4F;
@@ -158,7 +160,8 @@ TEST(OpenPixels, MeansTellWhatIsWithinTheNoiseOfEachPixel) {
     return std::abs(range * ray.y()) < 0.3 ? (2.5 - thick) / ray.x() : range;
   });
   test::addRangeNoise(cloud, params.sensor, random);
-  const auto open = openPixels(imageOf(cloud, params), {scene.room()[1]}, params.narrow);
+  const auto open =
+      openPixels(imageOf(cloud, params), gridOf(cloud, params), {scene.room()[1]}, params.narrow);
   double board = 0.0, found = 0.0;
   for (std::size_t i = 0; i < cloud.size(); ++i) {
     if (std::abs(cloud.points[i].y()) > 0.28F) continue;
@@ -174,14 +177,14 @@ TEST(OpenPixels, NothingIsOpenWhereNothingWasMeasured) {
   PointCloud cloud = Scene(0.08, 0.6).seen();
   for (Eigen::Vector3f& point : cloud.points) point.setConstant(std::nanf(""));
   const DepthImage image = imageOf(cloud, params);
-  const auto open = openPixels(image, {}, params.narrow);
+  const auto open = openPixels(image, gridOf(cloud, params), {}, params.narrow);
   EXPECT_EQ(std::count(open.begin(), open.end(), 0), static_cast<std::ptrdiff_t>(cloud.size()));
 }
 
 std::vector<PixelPlane> planesIn(const PointCloud& cloud, const std::vector<KnownSurface>& known,
                                  const PrimitiveParams& params) {
   const DepthImage image = imageOf(cloud, params);
-  return growPlanes(image, openPixels(image, known, params.narrow), known,
+  return growPlanes(image, openPixels(image, gridOf(cloud, params), known, params.narrow), known,
                     {params.narrow, params.sampling.max_incidence, params.refinement.max_turn,
                      params.refinement.test_sigmas});
 }
@@ -283,7 +286,7 @@ TEST(AddNarrowPlanes, SamplesAndNodesFollowThoseThatWere) {
   const PointCloud cloud = scene.seenThroughNoise(random);
   Input input(scene);
   const Eigen::Vector3f first = input.samples.points[0];
-  addNarrowPlanes(cloud, params, input.samples, input.graph);
+  addNarrowPlanes(cloud, gridOf(cloud, params), params, input.samples, input.graph);
   ASSERT_EQ(input.graph.nodes.size(), 4U);
   ASSERT_EQ(input.graph.edges.size(), 1U);
   EXPECT_EQ(input.graph.edges[0].planes, (std::array<int, 2>{0, 1}));
@@ -330,7 +333,7 @@ TEST(AddNarrowPlanes, TakesThePlaceOfAPlaneThatItsRimsTurned) {
   }
   input.graph.nodes.push_back(node);
   input.graph.edges.push_back({{1, 2}, 3.0});
-  addNarrowPlanes(cloud, params, input.samples, input.graph);
+  addNarrowPlanes(cloud, gridOf(cloud, params), params, input.samples, input.graph);
   ASSERT_EQ(input.graph.nodes.size(), 4U);
   EXPECT_EQ(input.graph.edges.size(), 1U) << "that of the plane which is gone is gone, too";
   for (std::size_t k = 2; k < 4; ++k) {
@@ -345,12 +348,8 @@ TEST(AddNarrowPlanes, OnlyInDepthImages) {
   const Scene scene(0.06, 0.8);
   PointCloud cloud = scene.seen();
   Input input(scene);
-  PointCloud turning = cloud;
-  turning.columns_wrap = true;
-  addNarrowPlanes(turning, params, input.samples, input.graph);
-  cloud.rows = cloud.cols = 0;
-  addNarrowPlanes(cloud, params, input.samples, input.graph);
-  addNarrowPlanes({}, params, input.samples, input.graph);
+  cloud.columns_wrap = true;
+  addNarrowPlanes(cloud, gridOf(cloud, params), params, input.samples, input.graph);
   EXPECT_EQ(input.graph.nodes.size(), 2U);
   EXPECT_EQ(input.samples.size(), 1U);
 }

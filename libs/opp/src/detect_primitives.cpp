@@ -38,7 +38,7 @@ Primitives detectPrimitives(const PointCloud& cloud, ScanSurface& surface,
   laps.voting = stopwatch.lap();
   PlaneGraph graph = buildPlaneGraph(surface.samples, hypotheses, params.sensor, params.graph);
   laps.clustering = stopwatch.lap();
-  addNarrowPlanes(cloud, params, surface.samples, graph);
+  if (surface.grid) addNarrowPlanes(cloud, *surface.grid, params, surface.samples, graph);
   laps.narrow = stopwatch.lap();
   return primitivesOf(surface.samples, graph, params, stopwatch, laps);
 }

@@ -30,6 +30,7 @@ class DepthImage {
   /// `cloud` must outlive this.
   DepthImage(const PointCloud& cloud, const SensorModel& sensor, const SamplingParams& params);
 
+  Eigen::Vector3d viewpoint() const { return cloud_.viewpoint.cast<double>(); }
   int rows() const { return cloud_.rows; }
   int cols() const { return cloud_.cols; }
   std::size_t size() const { return cloud_.size(); }

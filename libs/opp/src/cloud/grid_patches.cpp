@@ -74,6 +74,8 @@ GridPatches makeGridPatches(const PointCloud& cloud, const SensorModel& sensor,
   GridPatches grid;
   grid.rows = (cloud.rows + shape.rows - 1) / shape.rows;
   grid.cols = (cloud.cols + shape.cols - 1) / shape.cols;
+  grid.block_rows = shape.rows;
+  grid.block_cols = shape.cols;
   grid.columns_wrap = cloud.columns_wrap;
   grid.patches.origin = roughCenter(cloud, gate);
   const double farthest = sensor.farthestSurface();

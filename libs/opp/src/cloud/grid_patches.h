@@ -17,6 +17,8 @@ struct GridPatches {
   Patches patches;
   int rows = 0;  ///< of blocks
   int cols = 0;
+  int block_rows = 1;  ///< of a block, in pixels
+  int block_cols = 1;
   bool columns_wrap = false;
   /// [row * cols + col]; −1: no point in it, or too far away
   std::vector<int> patch_of_block;

@@ -12,6 +12,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <utility>
 
 namespace opp {
@@ -89,15 +90,16 @@ OrientedCloud fromUnorganized(const PointCloud& cloud, const SensorModel& sensor
   return fromPatches(patches, *nearestPatches(patches), cloud, sensor, params);
 }
 
+/// `grid` is filled if the samples are of its patches.
 OrientedCloud denseSurface(const PointCloud& cloud, const SensorModel& sensor,
-                           const SamplingParams& params) {
+                           const SamplingParams& params, std::shared_ptr<const GridPatches>& grid) {
   if (cloud.hasNormals()) return fromGivenNormals(cloud, sensor);
   const auto patch_count =
       static_cast<std::size_t>(params.patches_per_sample * params.target_samples);
   if (!cloud.organized()) return fromUnorganized(cloud, sensor, params, patch_count);
-  const GridPatches grid = makeGridPatches(cloud, sensor, patch_count);
-  GridWindows windows(grid, params.max_window_radius);
-  return fromPatches(grid.patches, windows, cloud, sensor, params);
+  grid = std::make_shared<const GridPatches>(makeGridPatches(cloud, sensor, patch_count));
+  GridWindows windows(*grid, params.max_window_radius);
+  return fromPatches(grid->patches, windows, cloud, sensor, params);
 }
 
 /// The middle one of the points' noise levels: most samples need not be closer than it allows.
@@ -165,10 +167,12 @@ ScanSurface makeScanSurface(const PointCloud& cloud, const SensorModel& sensor,
   check(cloud);
   StageTimings laps = timings == nullptr ? StageTimings() : *timings;
   Stopwatch stopwatch;
-  OrientedCloud dense = denseSurface(cloud, sensor, params);
+  std::shared_ptr<const GridPatches> grid;
+  OrientedCloud dense = denseSurface(cloud, sensor, params, grid);
   dense.viewpoint = cloud.viewpoint;
   laps.normals = stopwatch.lap();
   ScanSurface surface = thinned(std::move(dense), params);
+  if (surface.patches.size() > 0) surface.grid = std::move(grid);
   laps.sampling = stopwatch.lap();
   if (timings != nullptr) *timings = laps;
   return surface;
@@ -195,7 +199,7 @@ std::size_t splitSamples(ScanSurface& surface, const std::vector<std::uint8_t>& 
         return open[static_cast<std::size_t>(surface.sample_of_patch[i])] != 0;
       },
       split);
-  surface = {std::move(split), {}, {}};
+  surface = {std::move(split), {}, {}, std::move(surface.grid)};
   return begin;
 }
 

@@ -5,6 +5,8 @@
 #include "opp/cloud/sampling_params.h"
 #include "opp/cloud/sensor_model.h"
 
+#include <Eigen/Core>
+
 #include <algorithm>
 
 namespace opp {
@@ -31,12 +33,30 @@ class PointNoise {
   /// With what a ray's direction is off by: it meets a slanted surface nearer or farther (modelled
   /// so by Handa et al., ICRA 2014).
   double expected(double squared_range, double height) const {
-    return expectedAt(squared_range, height * height);
-  }
-  /// The same, for the square of a height.
-  double expectedAt(double squared_range, double squared_height) const {
+    const double squared_height = height * height;
     const double slanted = std::max(0.0, squared_range - squared_height);
     return scale_ * (constant_ + quadratic_ * squared_range * squared_height + lateral_ * slanted);
+  }
+
+  /// The same on one plane, which no point on it is nearer to the viewpoint than.
+  class OnPlane {
+   public:
+    double variance(double squared_range) const {
+      return constant_ + slope_ * std::max(squared_range, squared_height_);
+    }
+    Eigen::ArrayXd variances(const Eigen::Ref<const Eigen::ArrayXd>& squared_ranges) const {
+      return constant_ + slope_ * squared_ranges.max(squared_height_);
+    }
+
+   private:
+    friend class PointNoise;
+    OnPlane(double constant, double slope, double squared_height)
+        : constant_(constant), slope_(slope), squared_height_(squared_height) {}
+    double constant_, slope_, squared_height_;
+  };
+  OnPlane onPlane(double squared_height) const {
+    return {scale_ * (constant_ - lateral_ * squared_height),
+            scale_ * (quadratic_ * squared_height + lateral_), squared_height};
   }
 
  private:

@@ -30,15 +30,15 @@ bool isNarrow(const PlaneNode& node, const NarrowParams& params) {
   return rimError(extent * extent, node.moments.variances()[1]).turn > params.max_rim_turn;
 }
 
-KnownSurface surfaceOf(const PlaneNode& node, const Eigen::Vector3f& viewpoint) {
-  KnownSurface surface;
-  surface.normal = node.plane.normal().cast<float>();
-  surface.height = static_cast<float>(-node.plane.signedDistance(viewpoint.cast<double>()));
+KnownSurface surfaceOf(const PlaneNode& node, const Eigen::Vector3f& viewpoint,
+                       const PointNoise& noise) {
+  const double d = node.plane.signedDistance(viewpoint.cast<double>());
+  const Plane about_viewpoint =
+      Plane::fromPointNormal(-d * node.plane.normal(), node.plane.normal());
   const Eigen::Vector3f far = Eigen::Vector3f::Constant(std::numeric_limits<float>::max());
-  surface.reach = node.reach.isEmpty() ? Eigen::AlignedBox3f(-far, far)
-                                       : Eigen::AlignedBox3f(node.reach.min() - viewpoint,
-                                                             node.reach.max() - viewpoint);
-  return surface;
+  if (node.reach.isEmpty()) return {about_viewpoint, Eigen::AlignedBox3f(-far, far), noise};
+  return {about_viewpoint,
+          Eigen::AlignedBox3f(node.reach.min() - viewpoint, node.reach.max() - viewpoint), noise};
 }
 
 bool isSame(const PlaneNode& node, const PlaneNode& found) {
@@ -139,10 +139,9 @@ class NarrowPlaneAdder {
 
 }  // namespace
 
-void addNarrowPlanes(const PointCloud& cloud, const PrimitiveParams& params, OrientedCloud& samples,
-                     PlaneGraph& graph) {
-  // Without extents the samples were not made of patches.
-  if (!cloud.organized() || cloud.columns_wrap || samples.extents.empty()) return;
+void addNarrowPlanes(const PointCloud& cloud, const GridPatches& grid,
+                     const PrimitiveParams& params, OrientedCloud& samples, PlaneGraph& graph) {
+  if (cloud.columns_wrap) return;
   const SensorModel sensor = params.sensor.withCorrelation(samples.noise_correlation);
   const DepthImage image(cloud, sensor, params.sampling);
   if (!(image.solidAngle() > 0.0)) return;
@@ -150,13 +149,14 @@ void addNarrowPlanes(const PointCloud& cloud, const PrimitiveParams& params, Ori
   std::vector<std::uint8_t> narrow_nodes;
   for (const PlaneNode& node : graph.nodes) {
     narrow_nodes.push_back(isNarrow(node, params.narrow) ? 1 : 0);
-    if (narrow_nodes.back() == 0) surfaces.push_back(surfaceOf(node, cloud.viewpoint));
+    if (narrow_nodes.back() == 0)
+      surfaces.push_back(surfaceOf(node, cloud.viewpoint, image.noise()));
   }
   const RegionRule rule{params.narrow, params.sampling.max_incidence, params.refinement.max_turn,
                         params.refinement.test_sigmas};
   NarrowPlaneAdder adder(params, sensor, narrow_nodes, samples, graph);
   for (const PixelPlane& plane :
-       growPlanes(image, openPixels(image, surfaces, params.narrow), surfaces, rule)) {
+       growPlanes(image, openPixels(image, grid, surfaces, params.narrow), surfaces, rule)) {
     adder.add(narrowSamples(plane, image, cloud.viewpoint.cast<double>(), samples.spacing));
   }
   adder.finish();

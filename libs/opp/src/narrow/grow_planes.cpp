@@ -53,7 +53,8 @@ class PlaneGrower {
         least_pixels_(rule.params.min_pixels),
         most_scatter_(rule.params.max_scatter),
         tries_(static_cast<std::size_t>(cells_.size()), 0),
-        reached_(static_cast<std::size_t>(cells_.size()), 0) {}
+        reached_(static_cast<std::size_t>(cells_.size()), 0),
+        member_(reached_) {}
 
   std::vector<PixelPlane> grow() {
     for (const int seed : seeds()) {
@@ -114,7 +115,7 @@ class PlaneGrower {
   }
 
   /// Gathers the cells on the plane that hang together with the seed. While the plane is `rough`,
-  /// its own uncertainty counts, and it is fitted anew as it grows.
+  /// its own uncertainty counts, and it is fitted anew as it grows: cells may be on it later.
   void spread(int seed, bool rough, Growth& growth) {
     growth.cells.clear();
     ++search_;
@@ -125,6 +126,7 @@ class PlaneGrower {
     const auto add = [&](int index) {
       const auto at = static_cast<std::size_t>(index);
       if (reached_[at] == search_ || tries_[at] >= kMostTries) return;
+      if (!rough) reached_[at] = search_;
       const PixelCell& cell = cells_[index];
       const RayFrame::Ray ray = growth.frame.of(cell.point);
       if (!(ray.inverse_depth > 0.0)) return;
@@ -133,7 +135,7 @@ class PlaneGrower {
       const double variance = varianceOf(cell, ray, noise);
       const double unknown = rough ? row.dot(growth.covariance * row) : 0.0;
       if (!(residual * residual <= squared_gate_ * (variance + unknown))) return;
-      reached_[at] = search_;
+      reached_[at] = member_[at] = search_;
       growth.cells.push_back(index);
       fit.add(ray, 1.0 / variance);
       squares += residual * residual / variance;
@@ -144,10 +146,22 @@ class PlaneGrower {
     };
     add(seed);
     for (std::size_t next = 0; next < growth.cells.size(); ++next) {
-      cells_.visitAround(cells_[growth.cells[next]], rough ? 1 : kGap, add);
+      const PixelCell& cell = cells_[growth.cells[next]];
+      cells_.visitAround(cell, 1, add);
+      // What is beyond others of the plane is near one of them, too.
+      if (!rough && !isInside(cell)) cells_.visitAround(cell, kGap, add);
     }
     take(fit, growth);
     growth.scatter = squares / fit.count();
+  }
+
+  /// Whether the search has all cells around this one.
+  bool isInside(const PixelCell& cell) const {
+    int members = 0;
+    cells_.visitAround(cell, 1, [&](int other) {
+      members += member_[static_cast<std::size_t>(other)] == search_ ? 1 : 0;
+    });
+    return members == 9;
   }
 
   static void take(InverseDepthFit fit, Growth& growth) {
@@ -203,7 +217,8 @@ class PlaneGrower {
   double squared_gate_;
   double least_pixels_, most_scatter_;
   std::vector<int> tries_;    ///< per cell: regions with it; those of planes have no more
-  std::vector<int> reached_;  ///< per cell: the last search that added it
+  std::vector<int> reached_;  ///< per cell: the last search that decided on it
+  std::vector<int> member_;   ///< per cell: the last search that added it
   int search_ = 0;
 };
 

@@ -14,11 +14,6 @@ RayFrame::RayFrame(const Eigen::Vector3d& axis) {
   axes_.rightCols<2>() = tangentBasis(axes_.col(0));
 }
 
-RayFrame::Ray RayFrame::of(const Eigen::Vector3f& point) const {
-  const Eigen::Vector3d x = axes_.transpose() * point.cast<double>();
-  return {x[1] / x[0], x[2] / x[0], 1.0 / x[0]};
-}
-
 Eigen::Vector3d RayFrame::meet(const Ray& ray, const Eigen::Vector3d& coefficients) const {
   return axes_ * ray.row() / coefficients.dot(ray.row());
 }
@@ -40,6 +35,16 @@ double RayFrame::angleVariance(const Eigen::Vector3d& coefficients,
       tangents.transpose() * covariance * tangents / coefficients.squaredNorm();
   return Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>(angles, Eigen::EigenvaluesOnly)
       .eigenvalues()[1];
+}
+
+void InverseDepthFit::add(const RayArrays& rays, const Eigen::ArrayXd& weights) {
+  const auto u = RayArrays::view(rays.u), v = RayArrays::view(rays.v);
+  const auto w = RayArrays::view(rays.inverse_depth);
+  const Eigen::ArrayXd wu = weights * u, wv = weights * v, ww = weights * w;
+  n_ += weights.sum(), u_ += wu.sum(), v_ += wv.sum();
+  uu_ += (wu * u).sum(), uv_ += (wu * v).sum(), vv_ += (wv * v).sum();
+  w_ += ww.sum(), uw_ += (ww * u).sum(), vw_ += (ww * v).sum(), ww_ += (ww * w).sum();
+  count_ += static_cast<double>((weights > 0.0).count());
 }
 
 bool InverseDepthFit::solve() {

@@ -6,6 +6,9 @@
 
 #include <Eigen/Core>
 
+#include <cstddef>
+#include <vector>
+
 namespace opp {
 
 /// Rays about the viewpoint by where they pierce a plane one unit along an axis. There, a surface's
@@ -20,9 +23,18 @@ class RayFrame {
     double inverse_depth = 0.0;  ///< along the axis [1/m]
     Eigen::Vector3d row() const { return {1.0, u, v}; }
   };
-  Ray of(const Eigen::Vector3f& point) const;
+  Ray of(const Eigen::Vector3f& point) const {
+    const Eigen::Vector3d x = axes_.transpose() * point.cast<double>();
+    const double depth = 1.0 / x[0];
+    return {x[1] * depth, x[2] * depth, depth};
+  }
   /// Where a ray meets the plane with these coefficients.
   Eigen::Vector3d meet(const Ray& ray, const Eigen::Vector3d& coefficients) const;
+  /// A direction along the axis and the two tangents: d·x of a ray's point is, over its inverse
+  /// depth, this times the ray's row.
+  Eigen::Vector3d along(const Eigen::Vector3d& direction) const {
+    return axes_.transpose() * direction;
+  }
   /// Turned to the viewpoint.
   Plane planeOf(const Eigen::Vector3d& coefficients) const;
   Eigen::Vector3d coefficientsOf(const Plane& plane) const;
@@ -32,6 +44,24 @@ class RayFrame {
 
  private:
   Eigen::Matrix3d axes_;  ///< the axis and two tangents, in its columns
+};
+
+/// Rays in one frame, number by number.
+struct RayArrays {
+  std::vector<double> u, v, inverse_depth;
+
+  using View = Eigen::Map<const Eigen::ArrayXd>;
+  static View view(const std::vector<double>& values) {
+    return {values.data(), static_cast<Eigen::Index>(values.size())};
+  }
+  std::size_t size() const { return u.size(); }
+  void add(const RayFrame::Ray& ray) {
+    u.push_back(ray.u), v.push_back(ray.v), inverse_depth.push_back(ray.inverse_depth);
+  }
+  /// coefficients·(1, u, v) of each.
+  Eigen::ArrayXd times(const Eigen::Vector3d& coefficients) const {
+    return coefficients[0] + coefficients[1] * view(u) + coefficients[2] * view(v);
+  }
 };
 
 /// Weighted least squares.
@@ -44,6 +74,8 @@ class InverseDepthFit {
     w_ += weight * w, uw_ += wu * w, vw_ += wv * w, ww_ += weight * w * w;
     count_ += 1.0;
   }
+  /// The same for many. \param weights ≥ 0; rays with none do not count.
+  void add(const RayArrays& rays, const Eigen::ArrayXd& weights);
   /// False if the rays do not fix a plane.
   bool solve();
   double count() const { return count_; }

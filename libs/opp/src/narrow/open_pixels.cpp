@@ -3,7 +3,6 @@
 #include "narrow/open_pixels.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstddef>
 #include <limits>
@@ -12,32 +11,43 @@
 namespace opp {
 namespace {
 
-/// Edge of a block in pixels; most blocks lie on one surface as a whole.
-constexpr int kBlock = 4;
-constexpr std::size_t kPixels = kBlock * kBlock;
 /// Edge of the cells whose means are tested, in pixels.
 constexpr int kCell = 2;
-/// Of 16 pixels on a surface, one in a hundred times one is farther from it than this many
-/// standard deviations.
-constexpr double kBlockSigmas = 3.5;
-/// The surface of the block before serves if a pixel is this near to it; else all are tried.
+/// The nearest surface is looked for among those within so many standard deviations.
+constexpr double kNearSigmas = 3.5;
+/// The surface of the block before serves if the middle is this near to it; else all are tried.
 constexpr double kSurelySigmas = 1.0;
+/// Of blocks on a surface, one in 150 scatters by more than as many standard deviations.
+constexpr double kScatterSigmas = 2.5;
+
+/// What the mean of `count` squares of standard normal numbers rarely exceeds (Wilson and Hilferty,
+/// PNAS 1931).
+double mostMeanSquare(double count) {
+  const double variance = 2.0 / (9.0 * count);
+  return std::pow(1.0 - variance + kScatterSigmas * std::sqrt(variance), 3);
+}
+
+/// Σ (n·x)² of the points that the sums are of.
+double squaresAlong(const Eigen::Vector3d& n, const MomentSums& sums) {
+  return n.x() * n.x() * sums[4] + n.y() * n.y() * sums[7] + n.z() * n.z() * sums[9] +
+         2.0 * (n.x() * n.y() * sums[5] + n.x() * n.z() * sums[6] + n.y() * n.z() * sums[8]);
+}
 
 class OpenPixelFinder {
  public:
-  OpenPixelFinder(const DepthImage& image, const std::vector<KnownSurface>& surfaces,
-                  const NarrowParams& params)
+  OpenPixelFinder(const DepthImage& image, const GridPatches& grid,
+                  const std::vector<KnownSurface>& surfaces, const NarrowParams& params)
       : image_(image),
+        grid_(grid),
         surfaces_(surfaces),
         squared_gate_(params.gate * params.gate),
-        rows_((image.rows() + kBlock - 1) / kBlock),
-        cols_((image.cols() + kBlock - 1) / kBlock),
-        surface_of_(static_cast<std::size_t>(rows_) * static_cast<std::size_t>(cols_), -1),
+        most_mean_square_(mostMeanSquare(static_cast<double>(grid.block_rows * grid.block_cols))),
+        surface_of_(grid.patch_of_block.size(), kNone),
         open_(image.size(), 0) {}
 
   std::vector<std::uint8_t> find() {
     std::vector<int> mixed;
-    for (int block = 0; block < rows_ * cols_; ++block) {
+    for (int block = 0; block < grid_.rows * grid_.cols; ++block) {
       if (!isOnOneSurface(block)) mixed.push_back(block);
     }
     for (const int block : mixed) markOpen(block);
@@ -45,55 +55,25 @@ class OpenPixelFinder {
   }
 
  private:
-  /// What was measured in a block.
-  struct Block {
-    std::array<float, kPixels> x, y, z;
-    std::array<int, kPixels> pixel, cell;
-    std::size_t size = 0;
-
-    Eigen::Vector3f point(std::size_t i) const { return {x[i], y[i], z[i]}; }
-  };
-
-  Block blockAt(int index) const {
-    Block block;
-    const int top = index / cols_ * kBlock, left = index % cols_ * kBlock;
-    for (int row = top; row < std::min(image_.rows(), top + kBlock); ++row) {
-      for (int col = left; col < std::min(image_.cols(), left + kBlock); ++col) {
-        const int pixel = image_.indexOf(row, col);
-        const Eigen::Vector3f point = image_.point(pixel);
-        if (!image_.inRange(point)) continue;
-        const std::size_t at = block.size++;
-        block.x[at] = point.x(), block.y[at] = point.y(), block.z[at] = point.z();
-        block.pixel[at] = pixel;
-        block.cell[at] = (row - top) / kCell * (kBlock / kCell) + (col - left) / kCell;
-      }
-    }
-    return block;
-  }
-
-  double varianceAt(const KnownSurface& surface, const Eigen::Vector3f& point) const {
-    return surface.variance(image_.noise(), static_cast<double>(point.squaredNorm()));
-  }
+  static constexpr int kNone = -1;
 
   /// Squared offset over its variance; infinite where the surface cannot be.
-  double misfit(const KnownSurface& surface, const Eigen::Vector3f& point) const {
-    if (!surface.reaches(point)) return std::numeric_limits<double>::infinity();
-    const double offset = surface.offset(point);
-    return offset * offset / varianceAt(surface, point);
+  static double misfit(const KnownSurface& surface, const Eigen::Vector3f& point) {
+    return surface.reaches(point) ? surface.misfit(point) : std::numeric_limits<double>::infinity();
   }
 
   const KnownSurface& surface(int index) const {
     return surfaces_[static_cast<std::size_t>(index)];
   }
 
-  /// The nearest surface, by the noise; −1: none near.
+  /// The nearest surface, by the noise of a pixel.
   int surfaceAt(int block, const Eigen::Vector3f& point) const {
-    for (const int before : {block % cols_ > 0 ? block - 1 : -1, block - cols_}) {
-      const int known = before < 0 ? -1 : surface_of_[static_cast<std::size_t>(before)];
+    for (const int before : {block % grid_.cols > 0 ? block - 1 : kNone, block - grid_.cols}) {
+      const int known = before < 0 ? kNone : surface_of_[static_cast<std::size_t>(before)];
       if (known >= 0 && misfit(surface(known), point) < kSurelySigmas * kSurelySigmas) return known;
     }
-    int nearest = -1;
-    double least = kBlockSigmas * kBlockSigmas;
+    int nearest = kNone;
+    double least = kNearSigmas * kNearSigmas;
     for (int k = 0; k < static_cast<int>(surfaces_.size()); ++k) {
       const double here = misfit(surface(k), point);
       if (here < least) least = here, nearest = k;
@@ -101,52 +81,32 @@ class OpenPixelFinder {
     return nearest;
   }
 
-  /// A pixel that was measured, if possible amid the block; −1: none was.
-  int pixelIn(int index) const {
-    const int row = std::min(image_.rows() - 1, index / cols_ * kBlock + kBlock / 2);
-    const int col = std::min(image_.cols() - 1, index % cols_ * kBlock + kBlock / 2);
-    const int middle = image_.indexOf(row, col);
-    if (image_.inRange(image_.point(middle))) return middle;
-    const Block block = blockAt(index);
-    return block.size == 0 ? -1 : block.pixel[block.size / 2];
-  }
-
-  /// True also where nothing was measured.
-  bool isOnOneSurface(int index) {
-    const int middle = pixelIn(index);
-    if (middle < 0) return true;
-    const Eigen::Vector3f inside = image_.point(middle);
-    const int known = surfaceAt(index, inside);
-    surface_of_[static_cast<std::size_t>(index)] = known;
+  /// True also where nothing was measured. The moments of the block's points tell.
+  bool isOnOneSurface(int block) {
+    const int patch = grid_.patch_of_block[static_cast<std::size_t>(block)];
+    if (patch < 0) return true;
+    const auto at = static_cast<std::size_t>(patch);
+    const Eigen::Vector3d to_origin = grid_.patches.origin - image_.viewpoint();
+    const Eigen::Vector3f middle = (grid_.patches.means[at] + to_origin).cast<float>();
+    const int known = surfaceAt(block, middle);
+    surface_of_[static_cast<std::size_t>(block)] = known;
     if (known < 0) return false;
-    const Eigen::Vector3f normal = surface(known).normal;
-    const float height = surface(known).height;
-    const int top = index / cols_ * kBlock, left = index % cols_ * kBlock;
-    // Without branches, which data would take at random.
-    float sum = 0.0F, farthest = 0.0F, count = 0.0F;
-    for (int row = top; row < std::min(image_.rows(), top + kBlock); ++row) {
-      for (int col = left; col < std::min(image_.cols(), left + kBlock); ++col) {
-        const Eigen::Vector3f point = image_.point(image_.indexOf(row, col));
-        const bool measured = image_.inRange(point);
-        const float offset = measured ? normal.dot(point) - height : 0.0F;
-        sum += offset;
-        farthest = std::max(farthest, std::abs(offset));
-        count += measured ? 1.0F : 0.0F;
-      }
-    }
-    const double variance = varianceAt(surface(known), inside);
-    const double mean = static_cast<double>(sum / count), most = static_cast<double>(farthest);
-    return most * most <= kBlockSigmas * kBlockSigmas * variance &&
-           mean * mean <=
-               squared_gate_ * variance * image_.sensor().meanVariance(static_cast<double>(count));
+    const MomentSums& sums = grid_.patches.sums[at];
+    const Eigen::Vector3d normal = surface(known).normal().cast<double>();
+    const double shift = surface(known).offset(to_origin.cast<float>());
+    const double mean = normal.dot(grid_.patches.means[at]) + shift;
+    const double square = squaresAlong(normal, sums) / sums[0] + shift * (2.0 * mean - shift);
+    const double variance = surface(known).variance(static_cast<double>(middle.squaredNorm()));
+    return square <= most_mean_square_ * variance &&
+           mean * mean <= squared_gate_ * variance * image_.sensor().meanVariance(sums[0]);
   }
 
   void findSurfacesAround(int block) {
     around_.clear();
-    const int row = block / cols_, col = block % cols_;
-    for (int r = std::max(0, row - 1); r <= std::min(rows_ - 1, row + 1); ++r) {
-      for (int c = std::max(0, col - 1); c <= std::min(cols_ - 1, col + 1); ++c) {
-        const int known = surface_of_[static_cast<std::size_t>(r * cols_ + c)];
+    const int row = block / grid_.cols, col = block % grid_.cols;
+    for (int r = std::max(0, row - 1); r <= std::min(grid_.rows - 1, row + 1); ++r) {
+      for (int c = std::max(0, col - 1); c <= std::min(grid_.cols - 1, col + 1); ++c) {
+        const int known = surface_of_[static_cast<std::size_t>(r * grid_.cols + c)];
         if (known < 0) continue;
         if (std::find(around_.begin(), around_.end(), known) == around_.end()) {
           around_.push_back(known);
@@ -155,53 +115,78 @@ class OpenPixelFinder {
     }
   }
 
-  void markOpen(int index) {
-    findSurfacesAround(index);
-    struct Cell {
-      double ratios = 0.0;  ///< Σ offset / standard deviation
-      double count = 0.0;
-    };
-    std::array<Cell, kPixels / (kCell * kCell)> cells;
-    const Block block = blockAt(index);
-    for (std::size_t i = 0; i < block.size; ++i) {
-      double least = std::numeric_limits<double>::infinity(), offset = 0.0;
-      for (const int k : around_) {
-        const double here = misfit(surface(k), block.point(i));
-        if (here < least) least = here, offset = surface(k).offset(block.point(i));
-      }
-      if (!(least <= squared_gate_)) {
-        open_[static_cast<std::size_t>(block.pixel[i])] = 1;
-        continue;
-      }
-      Cell& cell = cells[static_cast<std::size_t>(block.cell[i])];
-      cell.ratios += std::copysign(std::sqrt(least), offset);
-      cell.count += 1.0;
-    }
-    for (std::size_t i = 0; i < block.size; ++i) {
-      const Cell& cell = cells[static_cast<std::size_t>(block.cell[i])];
-      if (cell.count == 0.0) continue;
-      const double mean = cell.ratios / cell.count;
-      if (mean * mean > squared_gate_ * image_.sensor().meanVariance(cell.count)) {
-        open_[static_cast<std::size_t>(block.pixel[i])] = 1;
+  struct Cell {
+    double ratios = 0.0, count = 0.0;  ///< of its pixels near a surface
+  };
+  struct Pixel {
+    int index, cell;
+    double ratio;  ///< offset from the nearest surface, in standard deviations
+  };
+  /// What was measured in a block, and how far from the surfaces around.
+  void findPixels(int block) {
+    pixels_.clear();
+    const int cells_per_row = (grid_.block_cols + kCell - 1) / kCell;
+    const int top = block / grid_.cols * grid_.block_rows;
+    const int left = block % grid_.cols * grid_.block_cols;
+    const int bottom = std::min(image_.rows(), top + grid_.block_rows);
+    const int right = std::min(image_.cols(), left + grid_.block_cols);
+    for (int row = top; row < bottom; ++row) {
+      for (int col = left; col < right; ++col) {
+        const int index = image_.indexOf(row, col);
+        const Eigen::Vector3f point = image_.point(index);
+        if (!image_.inRange(point)) continue;
+        const int cell = (row - top) / kCell * cells_per_row + (col - left) / kCell;
+        pixels_.push_back({index, cell, ratioAt(point)});
       }
     }
   }
 
+  double ratioAt(const Eigen::Vector3f& point) const {
+    double least = std::numeric_limits<double>::infinity(), offset = 1.0;
+    for (const int k : around_) {
+      const double here = misfit(surface(k), point);
+      if (here < least) least = here, offset = surface(k).offset(point);
+    }
+    return std::copysign(std::sqrt(least), offset);
+  }
+
+  void markOpen(int block) {
+    findSurfacesAround(block);
+    findPixels(block);
+    cells_.assign(static_cast<std::size_t>(grid_.block_rows * grid_.block_cols), {});
+    for (const Pixel& pixel : pixels_) {
+      if (!(pixel.ratio * pixel.ratio <= squared_gate_)) continue;
+      Cell& cell = cells_[static_cast<std::size_t>(pixel.cell)];
+      cell.ratios += pixel.ratio;
+      cell.count += 1.0;
+    }
+    for (const Pixel& pixel : pixels_) {
+      const Cell& cell = cells_[static_cast<std::size_t>(pixel.cell)];
+      const double mean = cell.ratios / cell.count;
+      const bool is_near = pixel.ratio * pixel.ratio <= squared_gate_;
+      if (is_near && mean * mean <= squared_gate_ * image_.sensor().meanVariance(cell.count))
+        continue;
+      open_[static_cast<std::size_t>(pixel.index)] = 1;
+    }
+  }
+
   const DepthImage& image_;
+  const GridPatches& grid_;
   const std::vector<KnownSurface>& surfaces_;
-  double squared_gate_;
-  int rows_, cols_;              ///< of blocks
-  std::vector<int> surface_of_;  ///< per block: −1: none
+  double squared_gate_, most_mean_square_;
+  std::vector<int> surface_of_;  ///< per block
   std::vector<int> around_;      ///< surfaces of a block and its neighbours
+  std::vector<Pixel> pixels_;    ///< of a block
+  std::vector<Cell> cells_;      ///< of a block
   std::vector<std::uint8_t> open_;
 };
 
 }  // namespace
 
-std::vector<std::uint8_t> openPixels(const DepthImage& image,
+std::vector<std::uint8_t> openPixels(const DepthImage& image, const GridPatches& grid,
                                      const std::vector<KnownSurface>& surfaces,
                                      const NarrowParams& params) {
-  return OpenPixelFinder(image, surfaces, params).find();
+  return OpenPixelFinder(image, grid, surfaces, params).find();
 }
 
 }  // namespace opp

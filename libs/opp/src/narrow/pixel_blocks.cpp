@@ -3,33 +3,34 @@
 #include "narrow/pixel_blocks.h"
 
 #include <algorithm>
-#include <tuple>
+#include <cstddef>
 
 namespace opp {
 
 std::vector<PixelBlock> pixelBlocks(const DepthImage& image, const std::vector<int>& pixels,
                                     int edge) {
-  struct Entry {
-    int row, col, pixel;
-    bool operator<(const Entry& other) const {
-      return std::tie(row, col, pixel) < std::tie(other.row, other.col, other.pixel);
-    }
-  };
-  std::vector<Entry> entries;
-  entries.reserve(pixels.size());
-  for (const int pixel : pixels) {
-    entries.push_back({pixel / image.cols() / edge, pixel % image.cols() / edge, pixel});
-  }
-  std::sort(entries.begin(), entries.end());
   std::vector<PixelBlock> blocks;
-  for (const Entry& entry : entries) {
-    if (blocks.empty() || blocks.back().row != entry.row || blocks.back().col != entry.col) {
-      blocks.push_back({entry.row, entry.col});
+  std::vector<PixelBlock> line(static_cast<std::size_t>(image.cols() / edge + 1));
+  int row = 0, first = image.cols(), last = -1;  // blocks of the line that have pixels
+  const auto finishLine = [&] {
+    for (int col = first; col <= last; ++col) {
+      PixelBlock& block = line[static_cast<std::size_t>(col)];
+      if (block.count == 0.0) continue;
+      blocks.push_back({row, col, block.point / block.count, block.count});
+      block = {};
     }
-    blocks.back().point += image.point(entry.pixel).cast<double>();
-    blocks.back().count += 1.0;
+    first = image.cols(), last = -1;
+  };
+  for (const int pixel : pixels) {
+    if (pixel / image.cols() / edge != row) finishLine();
+    row = pixel / image.cols() / edge;
+    const int col = pixel % image.cols() / edge;
+    first = std::min(first, col), last = std::max(last, col);
+    PixelBlock& block = line[static_cast<std::size_t>(col)];
+    block.point += image.point(pixel).cast<double>();
+    block.count += 1.0;
   }
-  for (PixelBlock& block : blocks) block.point /= block.count;
+  finishLine();
   return blocks;
 }
 

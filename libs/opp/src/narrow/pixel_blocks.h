@@ -21,7 +21,8 @@ struct PixelBlock {
   double count = 0.0;
 };
 
-/// Blocks of `edge` × `edge` pixels that hold some of `pixels`, row by row. O(n log n).
+/// Blocks of `edge` × `edge` pixels that hold some of `pixels`, which ascend, row by row. O(n) but
+/// for gaps within rows.
 std::vector<PixelBlock> pixelBlocks(const DepthImage& image, const std::vector<int>& pixels,
                                     int edge);
 

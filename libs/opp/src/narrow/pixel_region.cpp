@@ -89,16 +89,12 @@ class Shape {
 };
 
 KnownSurface surfaceOf(const DepthImage& image, const PixelRegion& region) {
-  const Plane plane = region.frame.planeOf(region.coefficients);
-  KnownSurface surface;
-  surface.normal = plane.normal().cast<float>();
-  surface.height = static_cast<float>(-plane.d());
-  for (const int pixel : region.pixels) surface.reach.extend(image.point(pixel));
-  const float margin =
-      static_cast<float>(kMargin * image.pixelAngle()) * surface.reach.center().norm();
-  surface.reach.min().array() -= margin;
-  surface.reach.max().array() += margin;
-  return surface;
+  Eigen::AlignedBox3f reach;
+  for (const int pixel : region.pixels) reach.extend(image.point(pixel));
+  const float margin = static_cast<float>(kMargin * image.pixelAngle()) * reach.center().norm();
+  reach.min().array() -= margin;
+  reach.max().array() += margin;
+  return {region.frame.planeOf(region.coefficients), reach, image.noise()};
 }
 
 }  // namespace
@@ -113,8 +109,8 @@ RegionFitter::RegionFitter(const DepthImage& image, std::vector<KnownSurface> su
       taken_(image.size(), 0),
       reached_(image.size(), 0) {}
 
-std::vector<RegionFitter::Candidate> RegionFitter::candidatesOf(const PixelRegion& region) {
-  std::vector<Candidate> candidates;
+RegionFitter::Candidates RegionFitter::candidatesOf(const PixelRegion& region) {
+  Candidates candidates;
   ++search_;
   for (const PixelCell& cell : region.cells) {
     const int top = cell.row * PixelCell::kEdge, left = cell.col * PixelCell::kEdge;
@@ -130,7 +126,9 @@ std::vector<RegionFitter::Candidate> RegionFitter::candidatesOf(const PixelRegio
         if (!image_.inRange(point)) continue;
         const RayFrame::Ray ray = region.frame.of(point);
         if (!(ray.inverse_depth > 0.0)) continue;
-        candidates.push_back({pixel, false, ray, static_cast<double>(point.squaredNorm()), point});
+        candidates.pixels.push_back(pixel);
+        candidates.rays.add(ray);
+        candidates.squared_ranges.push_back(static_cast<double>(point.squaredNorm()));
       }
     }
   }
@@ -140,74 +138,88 @@ std::vector<RegionFitter::Candidate> RegionFitter::candidatesOf(const PixelRegio
 std::vector<RegionFitter::Rival> RegionFitter::rivalsOf(const PixelRegion& region) const {
   Eigen::AlignedBox3f box;
   Eigen::Vector3f center = Eigen::Vector3f::Zero();
+  float farthest = 0.0F;
   for (const PixelCell& cell : region.cells) {
     box.extend(cell.point);
     center += cell.point / static_cast<float>(region.cells.size());
+    farthest = std::max(farthest, cell.range);
   }
+  const double margin = kMargin * image_.pixelAngle() * static_cast<double>(farthest);
   const Plane plane = region.frame.planeOf(region.coefficients);
   std::vector<Rival> rivals;
   for (std::size_t k = 0; k < surfaces_.size(); ++k) {
     const KnownSurface& surface = surfaces_[k];
-    if (k == self_ || !surface.reach.intersects(box)) continue;
-    const double cosine = plane.normal().dot(surface.normal.cast<double>());
+    if (k == self_ || !surface.reach().intersects(box)) continue;
+    if (!surface.isNear(box, static_cast<double>(farthest), margin, rule_.test_sigmas)) continue;
+    const double cosine = plane.normal().dot(surface.normal().cast<double>());
     const double side = surface.offset(center);
     const bool parallel = std::abs(cosine) > kParallelCosine;
     const double gate = rule_.test_sigmas * rule_.test_sigmas;
-    const double variance =
-        surface.variance(image_.noise(), static_cast<double>(center.squaredNorm()));
     // A part of the same plane.
-    if (parallel && side * side < gate * variance) continue;
+    if (parallel && surface.misfit(center) < gate) continue;
     rivals.push_back({&surface, side, parallel});
   }
   return rivals;
 }
 
-bool RegionFitter::isBeyond(const Rival& rival, const PixelRegion& region,
-                            const Candidate& candidate) const {
+void RegionFitter::markBeyond(const Rival& rival, const RayFrame& frame,
+                              const Eigen::ArrayXd& own_depths, Candidates& candidates) const {
   const KnownSurface& surface = *rival.surface;
-  const double offset = surface.offset(candidate.point);
+  const auto depths = RayArrays::view(candidates.rays.inverse_depth);
+  const Eigen::ArrayXd along = candidates.rays.times(frame.along(surface.normal().cast<double>()));
+  const Eigen::ArrayXd offsets = along / depths - surface.height();
   const double gate = rule_.test_sigmas * rule_.test_sigmas;
-  const double variance = surface.variance(image_.noise(), candidate.squared_range);
-  if (offset * offset > gate * variance || !surface.reaches(candidate.point)) return false;
-  const Eigen::Vector3d met = region.frame.meet(candidate.ray, region.coefficients);
-  const double meeting = surface.offset(met.cast<float>());
-  // Parallel surfaces have no edge: the nearer has the pixel.
-  if (rival.parallel) return std::abs(offset) < std::abs(meeting - offset);
-  const double margin = kEdgePixels * image_.pixelAngle() * met.norm();
-  return meeting * rival.side < 0.0 || std::abs(meeting) < margin;
+  const Eigen::ArrayXd most =
+      gate * surface.noise().variances(RayArrays::view(candidates.squared_ranges));
+  for (Eigen::Index i = 0; i < offsets.size(); ++i) {
+    const double offset = offsets[i];
+    if (offset * offset > most[i]) continue;
+    const int pixel = candidates.pixels[static_cast<std::size_t>(i)];
+    if (!surface.reaches(image_.point(pixel))) continue;
+    // Where the ray meets the region's plane.
+    const double meeting = along[i] / own_depths[i] - surface.height();
+    const double range = std::sqrt(candidates.squared_ranges[static_cast<std::size_t>(i)]) *
+                         depths[i] / own_depths[i];
+    const double margin = kEdgePixels * image_.pixelAngle() * range;
+    // Parallel surfaces have no edge: the nearer has the pixel.
+    const bool is_beyond = rival.parallel
+                               ? std::abs(offset) < std::abs(meeting - offset)
+                               : meeting * rival.side < 0.0 || std::abs(meeting) < margin;
+    if (is_beyond) candidates.is_own[i] = 0.0;
+  }
 }
 
-void RegionFitter::markBeyond(const PixelRegion& region, std::vector<Candidate>& candidates) const {
-  for (Candidate& candidate : candidates) candidate.beyond = false;
+void RegionFitter::markOwn(const PixelRegion& region, Candidates& candidates) const {
+  candidates.is_own = Eigen::ArrayXd::Ones(static_cast<Eigen::Index>(candidates.pixels.size()));
+  const Eigen::ArrayXd own_depths = candidates.rays.times(region.coefficients);
   for (const Rival& rival : rivalsOf(region)) {
-    for (Candidate& candidate : candidates) {
-      candidate.beyond = candidate.beyond || isBeyond(rival, region, candidate);
-    }
+    markBeyond(rival, region.frame, own_depths, candidates);
   }
 }
 
 bool RegionFitter::fit(PixelRegion& region) {
-  std::vector<Candidate> candidates = candidatesOf(region);
+  Candidates candidates = candidatesOf(region);
+  const auto depths = RayArrays::view(candidates.rays.inverse_depth);
   const double gate = rule_.params.gate * rule_.params.gate;
+  Eigen::ArrayXd misfits;
   for (int pass = 0; pass < kPasses; ++pass) {
-    if (pass % kEdgeStride == 0) markBeyond(region, candidates);
-    const InverseDepthNoise noise(image_.noise(), region.coefficients);
+    if (pass % kEdgeStride == 0) markOwn(region, candidates);
+    const Eigen::ArrayXd precisions =
+        1.0 / InverseDepthNoise(image_.noise(), region.coefficients)
+                  .variances(RayArrays::view(candidates.squared_ranges), depths);
+    misfits = (candidates.rays.times(region.coefficients) - depths).square() * precisions;
+    const Eigen::ArrayXd roots =
+        candidates.is_own * (1.0 - misfits / (kOutlier * kOutlier)).max(0.0);
     InverseDepthFit fit;
-    region.pixels.clear();
-    for (const Candidate& candidate : candidates) {
-      if (candidate.beyond) continue;
-      const RayFrame::Ray& ray = candidate.ray;
-      const double precision = 1.0 / noise.variance(candidate.squared_range, ray.inverse_depth);
-      const double residual = region.coefficients.dot(ray.row()) - ray.inverse_depth;
-      const double misfit = residual * residual * precision;
-      const double root = 1.0 - misfit / (kOutlier * kOutlier);
-      if (!(root > 0.0)) continue;
-      if (misfit <= gate) region.pixels.push_back(candidate.pixel);
-      fit.add(ray, root * root * precision);
-    }
+    fit.add(candidates.rays, roots.square() * precisions);
     if (2.0 * fit.count() < rule_.params.min_pixels || !fit.solve()) return false;
     region.coefficients = fit.coefficients();
     region.covariance = fit.covariance();
+  }
+  region.pixels.clear();
+  for (Eigen::Index i = 0; i < misfits.size(); ++i) {
+    if (candidates.is_own[i] == 0.0 || misfits[i] > gate) continue;
+    region.pixels.push_back(candidates.pixels[static_cast<std::size_t>(i)]);
   }
   std::sort(region.pixels.begin(), region.pixels.end());
   return true;
@@ -252,9 +264,9 @@ bool RegionFitter::keep(PixelRegion region) {
 
 bool RegionFitter::hasNewRivals(std::size_t kept) const {
   const KnownSurface& own = surfaces_[known_ + kept];
-  return std::any_of(surfaces_.begin() + static_cast<std::ptrdiff_t>(known_ + kept) + 1,
-                     surfaces_.end(),
-                     [&](const KnownSurface& later) { return own.reach.intersects(later.reach); });
+  return std::any_of(
+      surfaces_.begin() + static_cast<std::ptrdiff_t>(known_ + kept) + 1, surfaces_.end(),
+      [&](const KnownSurface& later) { return own.reach().intersects(later.reach()); });
 }
 
 std::vector<PixelPlane> RegionFitter::refitAll() {

@@ -45,18 +45,19 @@ class RegionFitter {
     double side;  ///< of the region [m]
     bool parallel;
   };
-  /// What a region's plane is fitted to.
-  struct Candidate {
-    int pixel;
-    bool beyond;  ///< an edge: of another surface
-    RayFrame::Ray ray;
-    double squared_range;
-    Eigen::Vector3f point;
+  /// Pixels that a region's plane may be fitted to.
+  struct Candidates {
+    std::vector<int> pixels;
+    RayArrays rays;
+    std::vector<double> squared_ranges;
+    Eigen::ArrayXd is_own;  ///< 1; 0 beyond an edge with another surface
   };
-  std::vector<Candidate> candidatesOf(const PixelRegion& region);
+  Candidates candidatesOf(const PixelRegion& region);
   std::vector<Rival> rivalsOf(const PixelRegion& region) const;
-  void markBeyond(const PixelRegion& region, std::vector<Candidate>& candidates) const;
-  bool isBeyond(const Rival& rival, const PixelRegion& region, const Candidate& candidate) const;
+  void markOwn(const PixelRegion& region, Candidates& candidates) const;
+  /// Marks those that are the rival's. \param own_depths inverse depths of the region's plane.
+  void markBeyond(const Rival& rival, const RayFrame& frame, const Eigen::ArrayXd& own_depths,
+                  Candidates& candidates) const;
   /// Whether planes were kept near this one since.
   bool hasNewRivals(std::size_t kept) const;
   bool isPlane(const PixelRegion& region) const;

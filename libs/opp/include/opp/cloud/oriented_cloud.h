@@ -8,15 +8,20 @@
 #include "opp/primitives/stage_timings.h"
 
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 namespace opp {
+
+struct GridPatches;
 
 /// Samples of a scan and the patches that they were averaged from.
 struct ScanSurface {
   OrientedCloud samples;
   OrientedCloud patches;             ///< with extents; empty if points came with normals
   std::vector<int> sample_of_patch;  ///< index into samples
+  /// Of an organized cloud, if the patches are its blocks; for the library's own use.
+  std::shared_ptr<const GridPatches> grid = nullptr;
 };
 
 /// Turns raw points into evenly spaced surface samples with normals (Sommer et al. 2020, V-b).
@@ -41,7 +46,8 @@ OrientedCloud makeOrientedCloud(const PointCloud& cloud, const SensorModel& sens
                                 const SamplingParams& params, StageTimings* timings = nullptr);
 
 /// Replaces the samples marked in `open` (one entry each) by their patches, which then follow the
-/// other samples. Returns where they begin. The surface keeps no patches. O(samples + patches).
+/// other samples. Returns where they begin. The surface keeps no patches but
+/// those of the grid. O(samples + patches).
 std::size_t splitSamples(ScanSurface& surface, const std::vector<std::uint8_t>& open);
 
 }  // namespace opp
