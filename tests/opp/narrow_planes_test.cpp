@@ -214,6 +214,45 @@ TEST(GrowPlanes, FindsTheSidesOfABar) {
   EXPECT_GE(found, 2 * kScans * 9 / 10) << "of two sides each";
 }
 
+TEST(GrowPlanes, FacesThatMeetAtAFoldAreTwo) {
+  // A frame 2 cm behind a door, which is known, and the side of the cabinet; neither is yet known,
+  // and grown to cells on it each goes on around the fold.
+  const PrimitiveParams params;
+  test::Random random(20);
+  const PointNoise noise({}, {}, 0.002);
+  constexpr int kScans = 20;
+  int found = 0;
+  for (int scan = 0; scan < kScans; ++scan) {
+    const Eigen::Matrix3d turn =
+        Eigen::AngleAxisd(random.uniform(0.5, 0.9), Vector3d::UnitZ()).toRotationMatrix();
+    const Vector3d corner(1.2, 0.0, 0.0);
+    const double width = random.uniform(0.03, 0.05);
+    const Plane front = Plane::fromPointNormal(corner, -turn.col(0));
+    const Plane side = Plane::fromPointNormal(corner, turn.col(1));
+    const Plane door = Plane::fromPointNormal(corner - 0.02 * turn.col(0), -turn.col(0));
+    const test::RangeAlong cabinet = test::outsideOf({front, side});
+    PointCloud cloud = test::renderDepth({}, [&](const Vector3d& ray) {
+      const double on_door = test::insideOf({door})(ray);
+      const double across = turn.col(1).dot(corner - on_door * ray);
+      const double range = cabinet(ray);
+      const bool is_seen = std::abs(range * ray.z()) < 0.25 && range < 1.6;
+      return across > width ? on_door : is_seen ? range : 3.0 / ray.x();
+    });
+    test::addRangeNoise(cloud, params.sensor, random);
+    const Eigen::Vector3f far = Eigen::Vector3f::Constant(10.0F);
+    const std::vector<KnownSurface> known{
+        {door, {-far, far}, noise},
+        {Plane::fromPointNormal({3.0, 0.0, 0.0}, {-1.0, 0.0, 0.0}), {-far, far}, noise}};
+    for (const PixelPlane& plane : planesIn(cloud, known, params)) {
+      for (const Plane& face : {front, side}) {
+        if (angleBetween(plane.plane, face) > degToRad(3.0)) continue;
+        found += std::abs(plane.plane.d() - face.d()) < 0.005 ? 1 : 0;
+      }
+    }
+  }
+  EXPECT_GE(found, 2 * kScans * 3 / 4) << "of two faces each";
+}
+
 TEST(GrowPlanes, APipeHasNoWideOne) {
   const PrimitiveParams params;
   test::Random random(16);

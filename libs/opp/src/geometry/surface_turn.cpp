@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace opp {
 
@@ -15,6 +16,8 @@ void SurfaceTurn::add(const Eigen::Vector2d& place, double height, double varian
   row << 1.0, t.x(), t.y(), 0.5 * t.x() * t.x(), t.x() * t.y(), 0.5 * t.y() * t.y();
   known_ += row * row.transpose() / variance;
   sums_ += row * (height / variance);
+  squares_ += height * height / variance;
+  count_ += 1.0;
 }
 
 SurfaceTurn::Turns SurfaceTurn::turns() const {
@@ -24,6 +27,12 @@ SurfaceTurn::Turns SurfaceTurn::turns() const {
     return Turn{std::abs(bend) / width, std::sqrt(std::max(0.0, covariance(at, at))) / width};
   };
   return {turnOf(3, widths_[0]), turnOf(5, widths_[1])};
+}
+
+double SurfaceTurn::scatter() const {
+  const double freedom = count_ - 6.0;
+  if (!(freedom > 0.0)) return std::numeric_limits<double>::infinity();
+  return std::max(0.0, squares_ - sums_.dot(known_.inverse() * sums_)) / freedom;
 }
 
 }  // namespace opp

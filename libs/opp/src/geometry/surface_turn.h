@@ -25,6 +25,9 @@ class SurfaceTurn {
     Turn first, second;
   };
   Turns turns() const;
+  /// Mean square of what the form leaves of the heights, over their variance, per degree of freedom;
+  /// infinite where there is none. O(1).
+  double scatter() const;
 
  private:
   using Vector6 = Eigen::Matrix<double, 6, 1>;
@@ -32,6 +35,7 @@ class SurfaceTurn {
   Eigen::Vector2d widths_;
   Matrix6 known_ = Matrix6::Zero();
   Vector6 sums_ = Vector6::Zero();
+  double squares_ = 0.0, count_ = 0.0;
 };
 
 }  // namespace opp

@@ -2,6 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "narrow/grow_planes.h"
 
+#include "geometry/planar_spread.h"
+#include "narrow/cell_shape.h"
+#include "narrow/cell_windows.h"
 #include "narrow/inverse_depth_fit.h"
 #include "narrow/inverse_depth_noise.h"
 #include "narrow/pixel_cells.h"
@@ -16,12 +19,6 @@
 namespace opp {
 namespace {
 
-/// Cells in a window that a plane begins with, of nine.
-constexpr int kLeastWindow = 6;
-/// A window is no beginning if its cells scatter more, in variances of the noise.
-constexpr double kMostWindowMisfit = 2.5;
-/// What a missing cell of the window counts in that.
-constexpr double kMissingCell = 0.1;
 /// A growing plane is fitted anew when it has so many times the cells of the last fit.
 constexpr double kGrowth = 1.3;
 constexpr double kFirstFit = 16.0;
@@ -30,6 +27,9 @@ constexpr std::size_t kLeastCells = 12;
 constexpr int kGap = 4;
 /// Cells in so many regions that are no planes are not tried again.
 constexpr int kMostTries = 2;
+constexpr int kOwned = 1000;  ///< for those of planes
+/// A curved surface shows around a facet of it, within so many of its widths.
+constexpr double kAround = 2.0;
 /// Cells astride of edges scatter more than pixels that are fitted as far as the edges.
 constexpr double kCellScatter = 1.25;
 
@@ -48,72 +48,31 @@ class PlaneGrower {
               std::vector<KnownSurface> surfaces, const RegionRule& rule)
       : image_(image),
         cells_(image, open),
+        windows_(cellWindows(image, cells_)),
         fitter_(image, std::move(surfaces), rule),
+        rule_(rule),
         squared_gate_(rule.params.gate * rule.params.gate),
-        least_pixels_(rule.params.min_pixels),
-        most_scatter_(rule.params.max_scatter),
         tries_(static_cast<std::size_t>(cells_.size()), 0),
         reached_(static_cast<std::size_t>(cells_.size()), 0),
         member_(reached_) {}
 
   std::vector<PixelPlane> grow() {
-    for (const int seed : seeds()) {
-      if (tries_[static_cast<std::size_t>(seed)] == 0) growFrom(seed);
+    const std::vector<int> seeds = flattestFirst(windows_);
+    // Strips have no windows of their own. Faces that meet at a fold grow into each other, though,
+    // and are none then: what is left grows once more, to cells alone whose windows are on the
+    // plane.
+    for (const bool by_windows : {false, true}) {
+      by_windows_ = by_windows;
+      for (int& tries : tries_) tries = tries >= kOwned ? kOwned : 0;
+      for (const int seed : seeds) {
+        if (tries_[static_cast<std::size_t>(seed)] == 0) growFrom(seed);
+      }
     }
     // The first were fitted when the others beside them were not known.
     return fitter_.refitAll();
   }
 
  private:
-  /// Variance of a cell's inverse depth.
-  double varianceOf(const PixelCell& cell, const RayFrame::Ray& ray,
-                    const InverseDepthNoise& noise) const {
-    const auto range = static_cast<double>(cell.range);
-    return noise.variance(range * range, ray.inverse_depth) *
-           image_.sensor().meanVariance(cell.count);
-  }
-
-  /// Plane through a cell and its neighbours, in one or more passes; the misfit per degree of
-  /// freedom. Nothing if there are too few.
-  std::optional<double> fitWindow(int index, int passes, Growth& growth) const {
-    const PixelCell& center = cells_[index];
-    // First as if seen straight, then as it is.
-    growth.coefficients = {1.0 / static_cast<double>(center.range), 0.0, 0.0};
-    InverseDepthFit fit;
-    for (int pass = 0; pass < passes; ++pass) {
-      const InverseDepthNoise noise(image_.noise(), growth.coefficients);
-      fit = {};
-      cells_.visitAround(center, 1, [&](int other) {
-        const PixelCell& cell = cells_[other];
-        if (image_.jumps(cell.range, center.range)) return;
-        const RayFrame::Ray ray = growth.frame.of(cell.point);
-        fit.add(ray, 1.0 / varianceOf(cell, ray, noise));
-      });
-      if (fit.count() < kLeastWindow || !fit.solve()) return std::nullopt;
-      growth.coefficients = fit.coefficients();
-      growth.covariance = fit.covariance();
-    }
-    return fit.misfit() / (fit.count() - 3.0) + kMissingCell * (9.0 - fit.count());
-  }
-
-  Growth beginAt(int index) const {
-    return {RayFrame(cells_[index].point.cast<double>()), {}, {}, {}, 0.0};
-  }
-
-  /// Cells to begin at, the flattest neighbourhoods first.
-  std::vector<int> seeds() const {
-    std::vector<std::pair<double, int>> order;
-    for (int index = 0; index < cells_.size(); ++index) {
-      Growth growth = beginAt(index);
-      const auto misfit = fitWindow(index, 1, growth);
-      if (misfit && *misfit < kMostWindowMisfit) order.emplace_back(*misfit, index);
-    }
-    std::sort(order.begin(), order.end());
-    std::vector<int> seeds;
-    for (const auto& [misfit, index] : order) seeds.push_back(index);
-    return seeds;
-  }
-
   /// Gathers the cells on the plane that hang together with the seed. While the plane is `rough`,
   /// its own uncertainty counts, and it is fitted anew as it grows: cells may be on it later.
   void spread(int seed, bool rough, Growth& growth) {
@@ -132,9 +91,12 @@ class PlaneGrower {
       if (!(ray.inverse_depth > 0.0)) return;
       const Eigen::Vector3d row = ray.row();
       const double residual = growth.coefficients.dot(row) - ray.inverse_depth;
-      const double variance = varianceOf(cell, ray, noise);
+      const double variance = cellVariance(cell, ray, noise, image_);
       const double unknown = rough ? row.dot(growth.covariance * row) : 0.0;
       if (!(residual * residual <= squared_gate_ * (variance + unknown))) return;
+      if (by_windows_ && !windows_[at].isOn(growth.frame, growth.coefficients, growth.covariance)) {
+        return;
+      }
       reached_[at] = member_[at] = search_;
       growth.cells.push_back(index);
       fit.add(ray, 1.0 / variance);
@@ -178,45 +140,92 @@ class PlaneGrower {
 
   void growFrom(int seed) {
     ++tries_[static_cast<std::size_t>(seed)];
-    Growth growth = beginAt(seed);
-    if (!fitWindow(seed, 2, growth)) return;
+    const CellWindow& window = windows_[static_cast<std::size_t>(seed)];
+    Growth growth{window.frame, {}, window.coefficients, window.covariance};
     for (const bool rough : {true, false}) {
       spread(seed, rough, growth);
       if (growth.cells.size() < kLeastCells) return;
     }
     // A part of the pixels of a plane near others is open.
-    if (2.0 * pixelsOf(growth) < least_pixels_) return;
-    const bool found = growth.scatter <= kCellScatter * most_scatter_ && fitAndKeep(seed, growth);
+    if (2.0 * pixelsOf(growth) < rule_.params.min_pixels) return;
+    const bool found =
+        growth.scatter <= kCellScatter * rule_.params.max_scatter && fitAndKeep(seed, growth);
     for (const int index : growth.cells) {
-      tries_[static_cast<std::size_t>(index)] += found ? kMostTries : 1;
+      tries_[static_cast<std::size_t>(index)] += found ? kOwned : 1;
     }
   }
 
+  std::optional<PixelRegion> fitted(const Growth& growth) {
+    PixelRegion region{growth.frame, {}, growth.coefficients};
+    for (const int index : growth.cells) region.cells.push_back(cells_[index]);
+    return fitter_.fit(region) ? std::optional<PixelRegion>(region) : std::nullopt;
+  }
+
   bool fitAndKeep(int seed, Growth& growth) {
-    const auto fitted = [&] {
-      PixelRegion region{growth.frame, {}, growth.coefficients};
-      for (const int index : growth.cells) region.cells.push_back(cells_[index]);
-      return fitter_.fit(region) ? std::optional<PixelRegion>(region) : std::nullopt;
-    };
+    std::optional<PixelRegion> region = fitted(growth);
+    if (!region) return false;
     // What edges left the plane askew may have ended it too early.
-    std::optional<PixelRegion> region = fitted();
-    if (region) {
-      const std::size_t before = growth.cells.size();
-      growth.coefficients = region->coefficients;
-      spread(seed, false, growth);
-      if (static_cast<double>(growth.cells.size()) > kGrowth * static_cast<double>(before)) {
-        region = fitted();
+    Growth wider = growth;
+    wider.coefficients = region->coefficients;
+    spread(seed, false, wider);
+    if (static_cast<double>(wider.cells.size()) >
+        kGrowth * static_cast<double>(growth.cells.size())) {
+      growth = wider;
+      region = fitted(growth);
+    }
+    if (!region || !fitter_.isPlane(*region) || isFacet(growth, *region)) return false;
+    if (!fitter_.isKept(*region)) fitter_.keep(*region);
+    for (const int index : wider.cells) tries_[static_cast<std::size_t>(index)] = kOwned;
+    return true;
+  }
+
+  /// Whether the plane is a part of a curved surface that goes on around it.
+  bool isFacet(const Growth& growth, const PixelRegion& region) {
+    std::vector<PixelBlock> cells;
+    for (const int index : withThoseAround(growth.cells)) {
+      const PixelCell& cell = cells_[index];
+      cells.push_back(
+          {cell.row, cell.col, cell.point.cast<double>(), static_cast<double>(cell.count)});
+    }
+    const CellShape shape(image_, region.frame.planeOf(region.coefficients), cells);
+    return shape.turns(rule_.max_turn, rule_.test_sigmas) &&
+           shape.bentScatter() <= rule_.params.max_scatter;
+  }
+
+  /// Some cells, and those of no plane that hang together with them, within widths of these.
+  std::vector<int> withThoseAround(std::vector<int> cells) {
+    PlanarSpread grid;
+    ++search_;
+    for (const int index : cells) {
+      grid.add(cells_[index].row, cells_[index].col);
+      reached_[static_cast<std::size_t>(index)] = search_;
+    }
+    const int steps = static_cast<int>(std::ceil(kAround * grid.widths()[0]));
+    std::size_t begin = 0;
+    for (int step = 0; step < steps; ++step) {
+      const std::size_t end = cells.size();
+      for (; begin < end; ++begin) {
+        const PixelCell& cell = cells_[cells[begin]];
+        cells_.visitAround(cell, 1, [&](int other) {
+          const auto at = static_cast<std::size_t>(other);
+          if (reached_[at] == search_ || tries_[at] >= kOwned) return;
+          if (image_.jumps(cell.range, cells_[other].range)) return;
+          reached_[at] = search_;
+          cells.push_back(other);
+        });
       }
     }
-    return region && fitter_.keep(*region);
+    return cells;
   }
 
   const DepthImage& image_;
   PixelCells cells_;
+  std::vector<CellWindow> windows_;  ///< per cell
   RegionFitter fitter_;
+  RegionRule rule_;
   double squared_gate_;
-  double least_pixels_, most_scatter_;
-  std::vector<int> tries_;    ///< per cell: regions with it; those of planes have no more
+  bool by_windows_ = false;
+  std::vector<int> tries_;    ///< per cell: regions with it
   std::vector<int> reached_;  ///< per cell: the last search that decided on it
   std::vector<int> member_;   ///< per cell: the last search that added it
   int search_ = 0;

@@ -23,6 +23,8 @@ class RayFrame {
     double inverse_depth = 0.0;  ///< along the axis [1/m]
     Eigen::Vector3d row() const { return {1.0, u, v}; }
   };
+  /// The axis and two tangents, in its columns.
+  const Eigen::Matrix3d& axes() const { return axes_; }
   Ray of(const Eigen::Vector3f& point) const {
     const Eigen::Vector3d x = axes_.transpose() * point.cast<double>();
     const double depth = 1.0 / x[0];

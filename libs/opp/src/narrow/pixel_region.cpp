@@ -3,8 +3,8 @@
 #include "narrow/pixel_region.h"
 
 #include "geometry/planar_spread.h"
-#include "geometry/surface_turn.h"
 #include "geometry/visit_neighbours.h"
+#include "narrow/cell_shape.h"
 #include "narrow/inverse_depth_noise.h"
 #include "narrow/pixel_blocks.h"
 
@@ -28,6 +28,8 @@ constexpr double kOutlier = 4.0;
 constexpr double kEdgePixels = 0.5;
 /// Cells in a line have two neighbours each, in two lines five: seams between surfaces are lines.
 constexpr double kLeastNeighbours = 3.5;
+/// What is left at the rim of a plane scatters more about it.
+constexpr double kRimScatter = 1.5;
 /// Surfaces that are as parallel as this have no edge with each other.
 constexpr double kParallelCosine = 0.97;
 
@@ -36,57 +38,6 @@ double meanNeighbours(const std::vector<PixelBlock>& cells) {
   visitNeighbours(cells, [&](std::size_t, std::size_t) { pairs += 2.0; });
   return pairs / static_cast<double>(cells.size());
 }
-
-/// Cells about a plane through them.
-class Shape {
- public:
-  Shape(const DepthImage& image, const Plane& plane, std::vector<PixelBlock> cells)
-      : plane_(plane), cells_(std::move(cells)) {
-    const double height = plane.d();
-    for (const PixelBlock& cell : cells_) {
-      variances_.push_back(image.noise().expected(cell.point.squaredNorm(), height) *
-                           image.sensor().meanVariance(cell.count));
-    }
-  }
-
-  /// Mean squared offset over that of the noise.
-  double scatter() const {
-    double sum = 0.0;
-    for (std::size_t i = 0; i < cells_.size(); ++i) {
-      const double offset = plane_.signedDistance(cells_[i].point);
-      sum += offset * offset / variances_[i];
-    }
-    return sum / static_cast<double>(cells_.size());
-  }
-
-  /// Whether the surface turns by more than `most` across its extent, and by more than `sigmas`
-  /// times what noise could feign.
-  bool turns(double most, double sigmas) const {
-    const Eigen::Matrix<double, 3, 2> tangents = tangentBasis(plane_.normal());
-    PlanarSpread spread;
-    for (const PixelBlock& cell : cells_) {
-      spread.add(tangents.col(0).dot(cell.point), tangents.col(1).dot(cell.point));
-    }
-    const PlanarSpread::Axes axes = spread.axes();
-    if (!(axes.widths[0] > 0.0)) return true;
-    SurfaceTurn surface(axes.widths);
-    for (std::size_t i = 0; i < cells_.size(); ++i) {
-      const Eigen::Vector2d place = tangents.transpose() * cells_[i].point - spread.mean();
-      surface.add(axes.directions.transpose() * place, plane_.signedDistance(cells_[i].point),
-                  variances_[i]);
-    }
-    const SurfaceTurn::Turns turns = surface.turns();
-    const auto isSure = [&](const SurfaceTurn::Turn& turn) {
-      return turn.angle > most && turn.angle > sigmas * turn.error;
-    };
-    return isSure(turns.first) || isSure(turns.second);
-  }
-
- private:
-  const Plane& plane_;
-  std::vector<PixelBlock> cells_;
-  std::vector<double> variances_;  ///< of the cells' heights
-};
 
 KnownSurface surfaceOf(const DepthImage& image, const PixelRegion& region) {
   Eigen::AlignedBox3f reach;
@@ -244,22 +195,33 @@ bool RegionFitter::isPlane(const PixelRegion& region) const {
   const double angle_variance = kPatch * image_.sensor().meanVariance(kPatch) *
                                 region.frame.angleVariance(region.coefficients, region.covariance);
   if (angle_variance > params.max_uncertainty * params.max_uncertainty) return false;
-  std::vector<PixelBlock> cells = pixelBlocks(image_, region.pixels, PixelCell::kEdge);
+  const std::vector<PixelBlock> cells = pixelBlocks(image_, region.pixels, PixelCell::kEdge);
   if (meanNeighbours(cells) < kLeastNeighbours) return false;
-  const Shape shape(image_, plane, std::move(cells));
+  const CellShape shape(image_, plane, cells);
   return shape.scatter() <= params.max_scatter && !shape.turns(rule_.max_turn, rule_.test_sigmas);
+}
+
+bool RegionFitter::isKept(const PixelRegion& region) const {
+  const std::vector<PixelBlock> cells = pixelBlocks(image_, region.pixels, PixelCell::kEdge);
+  const KnownSurface own = surfaceOf(image_, region);
+  for (std::size_t k = 0; k < kept_.size(); ++k) {
+    if (!surfaces_[known_ + k].reach().intersects(own.reach())) continue;
+    const Plane plane = kept_[k].frame.planeOf(kept_[k].coefficients);
+    if (CellShape(image_, plane, cells).scatter() <= kRimScatter * rule_.params.max_scatter) {
+      return true;
+    }
+  }
+  return false;
 }
 
 void RegionFitter::claim(const PixelRegion& region) {
   for (const int pixel : region.pixels) taken_[static_cast<std::size_t>(pixel)] = 1;
 }
 
-bool RegionFitter::keep(PixelRegion region) {
-  if (!isPlane(region)) return false;
+void RegionFitter::keep(PixelRegion region) {
   claim(region);
   surfaces_.push_back(surfaceOf(image_, region));
   kept_.push_back(std::move(region));
-  return true;
 }
 
 bool RegionFitter::hasNewRivals(std::size_t kept) const {

@@ -33,8 +33,11 @@ class RegionFitter {
   /// to those whose ray would meet it beyond its edge with another surface. False if they are too
   /// few.
   bool fit(PixelRegion& region);
-  /// Keeps the region, whose pixels then are not of others, if it is a plane.
-  bool keep(PixelRegion region);
+  bool isPlane(const PixelRegion& region) const;
+  /// Whether a plane that was kept is that of the region, too.
+  bool isKept(const PixelRegion& region) const;
+  /// The region's pixels then are not of others.
+  void keep(PixelRegion region);
   /// Fits all that were kept once more, as each now knows the others.
   std::vector<PixelPlane> refitAll();
 
@@ -60,7 +63,6 @@ class RegionFitter {
                   Candidates& candidates) const;
   /// Whether planes were kept near this one since.
   bool hasNewRivals(std::size_t kept) const;
-  bool isPlane(const PixelRegion& region) const;
   void claim(const PixelRegion& region);
 
   const DepthImage& image_;
