@@ -14,7 +14,6 @@ namespace opp {
 namespace {
 
 constexpr double kExtent = 0.05;
-constexpr double kArea = kExtent * kExtent;
 constexpr double kSigma = 0.0025;
 
 /// Two planes about x = 3.4 m, seen from the origin, and their samples.
@@ -22,15 +21,16 @@ class TwoPieces {
  public:
   /// Adds a square grid of samples over y in [left, right) and z in [low, high) of plane `label`.
   void add(int label, double left, double right, double low, double high,
-           const std::function<double(double y, double z)>& x) {
-    const auto columns = std::lround((right - left) / kExtent);
-    const auto rows = std::lround((high - low) / kExtent);
+           const std::function<double(double y, double z)>& x, double extent = kExtent) {
+    const auto columns = std::lround((right - left) / extent);
+    const auto rows = std::lround((high - low) / extent);
     for (long row = 0; row < rows; ++row) {
       for (long column = 0; column < columns; ++column) {
-        const double y = left + (static_cast<double>(column) + 0.5) * kExtent;
-        const double z = low + (static_cast<double>(row) + 0.5) * kExtent;
+        const double y = left + (static_cast<double>(column) + 0.5) * extent;
+        const double z = low + (static_cast<double>(row) + 0.5) * extent;
+        const double area = extent * extent;
         samples_.push_back(
-            {{x(y, z), y, z}, -Eigen::Vector3d::UnitX(), kSigma * kSigma, kArea, kArea});
+            {{x(y, z), y, z}, -Eigen::Vector3d::UnitX(), kSigma * kSigma, area, area});
         labels_.push_back(label);
       }
     }
@@ -102,6 +102,21 @@ TEST(SameSurface, IsNoLayerThatTouchesAnotherInOnePlace) {
     apart += pieces.areOneSurface() ? 0 : 1;
   }
   EXPECT_GE(apart, 40) << "of 50; means of nine samples may lie between the two by chance";
+}
+
+TEST(SameSurface, IsNoFrameBehindADoor) {
+  // The frame's samples are closer: around those of the door beside it they prevail.
+  for (int trial = 0; trial < 50; ++trial) {
+    test::Random random(static_cast<std::uint64_t>(trial));
+    const double step = random.uniform(0.018, 0.025);
+    TwoPieces pieces;
+    pieces.add(0, -1.2, 0.3, -1.0, 1.0,
+               [&](double, double) { return 3.4 + random.normal(kSigma); });
+    pieces.add(
+        1, 0.3, 0.34, -1.0, 1.0, [&](double, double) { return 3.4 + step + random.normal(kSigma); },
+        0.02);
+    EXPECT_FALSE(pieces.areOneSurface()) << trial;
+  }
 }
 
 }  // namespace

@@ -41,6 +41,12 @@ bool turnsBy(const PlaneFit& part, const Eigen::Vector3d& normal, double slope, 
   return turn.dot(weight * turn) <= sigmas * sigmas;
 }
 
+/// Where the two planes are this many standard deviations of a sample apart, its own error does not
+/// decide whose it is: if it lies on one of them, within this part of their distance, and not
+/// halfway, as where a bent surface goes over from one to the other.
+constexpr double kApart = 6.0;
+constexpr double kOnOne = 0.25;
+
 /// A sample in the frame of the common plane.
 struct Place {
   double row = 0.0;    ///< of strips along the plane, as wide as samples reach that adjoin
@@ -48,9 +54,18 @@ struct Place {
   double across = 0.0;
   double offset = 0.0;  ///< from the plane [m]
   double squared_extent = 0.0;
-  int label = 0;  ///< +1: of the first plane, −1: of the second
-  int side = 0;   ///< sum of the labels of the samples that adjoin
+  int label = 0;         ///< +1: of the first plane, −1: of the second
+  bool is_sure = false;  ///< the label is
+  int side = 0;          ///< > 0: of the first plane, < 0: of the second, as those around tell
 };
+
+/// Whether the sample is plainly of its own plane and not of the other.
+bool isSureOf(const WeightedSample& sample, const PlaneFit& own, const PlaneFit& other) {
+  const double sign = own.plane.normal().dot(other.plane.normal()) < 0.0 ? -1.0 : 1.0;
+  const double offset = own.plane.signedDistance(sample.point);
+  const double gap = offset - sign * other.plane.signedDistance(sample.point);
+  return gap * gap > kApart * kApart * sample.variance && std::abs(offset) < kOnOne * std::abs(gap);
+}
 
 bool adjoin(const Place& a, const Place& b) {
   const double along = b.along - a.along, across = b.across - a.across;
@@ -152,7 +167,8 @@ bool SameSurface::goesOn(std::size_t a, std::size_t b, const Eigen::Vector3d& no
       const Eigen::Vector2d place(tangents.col(0).dot(sample.point),
                                   tangents.col(1).dot(sample.point));
       places.push_back({0.0, place.x(), place.y(), normal.dot(sample.point), sample.area,
-                        plane == a ? 1 : -1, 0});
+                        plane == a ? 1 : -1, isSureOf(sample, fits_[plane], fits_[a + b - plane]),
+                        0});
       boxes[plane == a ? 0 : 1].extend(place);
     }
   }
@@ -169,7 +185,10 @@ bool SameSurface::goesOn(std::size_t a, std::size_t b, const Eigen::Vector3d& no
     places[j].side += places[i].label;
     adjoining.emplace_back(i, j);
   });
-  // A sample's own label depends on its own error, which would show as a step.
+  // A sample's own label may depend on its own error, which would show as a step.
+  for (Place& place : places) {
+    if (place.is_sure) place.side = place.label;
+  }
   double pairs = 0.0, jumps = 0.0, squares = 0.0;
   for (const auto& [i, j] : adjoining) {
     if (places[i].side == 0 || places[j].side == 0) continue;
