@@ -3,6 +3,7 @@
 #include "narrow/grow_planes.h"
 
 #include "geometry/planar_spread.h"
+#include "narrow/cell_mask.h"
 #include "narrow/cell_shape.h"
 #include "narrow/cell_windows.h"
 #include "narrow/inverse_depth_fit.h"
@@ -54,7 +55,7 @@ class PlaneGrower {
         squared_gate_(rule.params.gate * rule.params.gate),
         tries_(static_cast<std::size_t>(cells_.size()), 0),
         reached_(static_cast<std::size_t>(cells_.size()), 0),
-        member_(reached_) {}
+        open_(cells_.rows(), cells_.cols()) {}
 
   std::vector<PixelPlane> grow() {
     const std::vector<int> seeds = flattestFirst(windows_);
@@ -63,7 +64,7 @@ class PlaneGrower {
     // plane.
     for (const bool by_windows : {false, true}) {
       by_windows_ = by_windows;
-      for (int& tries : tries_) tries = tries >= kOwned ? kOwned : 0;
+      forgetTries();
       for (const int seed : seeds) {
         if (tries_[static_cast<std::size_t>(seed)] == 0) growFrom(seed);
       }
@@ -73,57 +74,98 @@ class PlaneGrower {
   }
 
  private:
-  /// Gathers the cells on the plane that hang together with the seed. While the plane is `rough`,
-  /// its own uncertainty counts, and it is fitted anew as it grows: cells may be on it later.
-  void spread(int seed, bool rough, Growth& growth) {
-    growth.cells.clear();
-    ++search_;
-    InverseDepthNoise noise(image_.noise(), growth.coefficients);
-    InverseDepthFit fit;
-    double squares = 0.0;
-    double next_fit = kFirstFit;
-    const auto add = [&](int index) {
-      const auto at = static_cast<std::size_t>(index);
-      if (reached_[at] == search_ || tries_[at] >= kMostTries) return;
-      if (!rough) reached_[at] = search_;
-      const PixelCell& cell = cells_[index];
-      const RayFrame::Ray ray = growth.frame.of(cell.point);
-      if (!(ray.inverse_depth > 0.0)) return;
-      const Eigen::Vector3d row = ray.row();
-      const double residual = growth.coefficients.dot(row) - ray.inverse_depth;
-      const double variance = cellVariance(cell, ray, noise, image_);
-      const double unknown = rough ? row.dot(growth.covariance * row) : 0.0;
-      if (!(residual * residual <= squared_gate_ * (variance + unknown))) return;
-      if (by_windows_ && !windows_[at].isOn(growth.frame, growth.coefficients, growth.covariance)) {
-        return;
-      }
-      reached_[at] = member_[at] = search_;
-      growth.cells.push_back(index);
-      fit.add(ray, 1.0 / variance);
-      squares += residual * residual / variance;
-      if (!rough || fit.count() < next_fit) return;
-      next_fit = kGrowth * fit.count();
-      take(fit, growth);
-      noise = InverseDepthNoise(image_.noise(), growth.coefficients);
-    };
-    add(seed);
-    for (std::size_t next = 0; next < growth.cells.size(); ++next) {
-      const PixelCell& cell = cells_[growth.cells[next]];
-      cells_.visitAround(cell, 1, add);
-      // What is beyond others of the plane is near one of them, too.
-      if (!rough && !isInside(cell)) cells_.visitAround(cell, kGap, add);
+  /// Cells of planes are not tried again.
+  void forgetTries() {
+    for (int index = 0; index < cells_.size(); ++index) {
+      int& tries = tries_[static_cast<std::size_t>(index)];
+      if (tries >= kOwned) continue;
+      tries = 0;
+      open_.mark(cells_[index].row, cells_[index].col);
     }
-    take(fit, growth);
-    growth.scatter = squares / fit.count();
   }
 
-  /// Whether the search has all cells around this one.
-  bool isInside(const PixelCell& cell) const {
-    int members = 0;
-    cells_.visitAround(cell, 1, [&](int other) {
-      members += member_[static_cast<std::size_t>(other)] == search_ ? 1 : 0;
-    });
-    return members == 9;
+  int mostTries() const { return by_windows_ ? 1 : kMostTries; }
+
+  void addTries(int index, int count) {
+    int& tries = tries_[static_cast<std::size_t>(index)];
+    tries += count;
+    if (tries >= mostTries()) open_.clear(cells_[index].row, cells_[index].col);
+  }
+
+  /// The fit of a plane to the cells that are gathered for it.
+  struct Gathering {
+    InverseDepthNoise noise;
+    InverseDepthFit fit = {};
+    double squares = 0.0;  ///< residuals, over their variances
+    double next_fit = kFirstFit;
+  };
+
+  /// Gathers the cells on the plane that hang together with the seed, through gaps, too.
+  void spread(int seed, Growth& growth) {
+    growth.cells.clear();
+    Gathering gathering{{image_.noise(), growth.coefficients}};
+    CellMask untried = open_;
+    const auto tryCell = [&](int row, int col) {
+      const int index = cells_.indexAt(row, col);
+      if (isOn(index, false, gathering, growth)) add(index, gathering, growth);
+    };
+    untried.takeAround(cells_[seed].row, cells_[seed].col, 0, tryCell);
+    for (std::size_t next = 0; next < growth.cells.size(); ++next) {
+      const PixelCell& cell = cells_[growth.cells[next]];
+      untried.takeAround(cell.row, cell.col, kGap, tryCell);
+    }
+    finish(gathering, growth);
+  }
+
+  /// The same while the plane is rough: its own uncertainty counts, and it is fitted anew as it
+  /// grows, so that cells may be on it later.
+  void spreadRoughly(int seed, Growth& growth) {
+    growth.cells.clear();
+    ++search_;
+    Gathering gathering{{image_.noise(), growth.coefficients}};
+    const auto tryCell = [&](int index) {
+      const auto at = static_cast<std::size_t>(index);
+      if (reached_[at] == search_ || tries_[at] >= mostTries()) return;
+      if (!isOn(index, true, gathering, growth)) return;
+      reached_[at] = search_;
+      add(index, gathering, growth);
+      if (gathering.fit.count() < gathering.next_fit) return;
+      gathering.next_fit = kGrowth * gathering.fit.count();
+      take(gathering.fit, growth);
+      gathering.noise = InverseDepthNoise(image_.noise(), growth.coefficients);
+    };
+    tryCell(seed);
+    for (std::size_t next = 0; next < growth.cells.size(); ++next) {
+      cells_.visitAround(cells_[growth.cells[next]], 1, tryCell);
+    }
+    finish(gathering, growth);
+  }
+
+  bool isOn(int index, bool rough, const Gathering& gathering, const Growth& growth) const {
+    const PixelCell& cell = cells_[index];
+    const RayFrame::Ray ray = growth.frame.of(cell.point);
+    if (!(ray.inverse_depth > 0.0)) return false;
+    const Eigen::Vector3d row = ray.row();
+    const double residual = growth.coefficients.dot(row) - ray.inverse_depth;
+    const double variance = cellVariance(cell, ray, gathering.noise, image_) +
+                            (rough ? row.dot(growth.covariance * row) : 0.0);
+    if (!(residual * residual <= squared_gate_ * variance)) return false;
+    return !by_windows_ || windows_[static_cast<std::size_t>(index)].isOn(
+                               growth.frame, growth.coefficients, growth.covariance);
+  }
+
+  void add(int index, Gathering& gathering, Growth& growth) const {
+    const RayFrame::Ray ray = growth.frame.of(cells_[index].point);
+    const double precision = 1.0 / cellVariance(cells_[index], ray, gathering.noise, image_);
+    const double residual = growth.coefficients.dot(ray.row()) - ray.inverse_depth;
+    growth.cells.push_back(index);
+    gathering.fit.add(ray, precision);
+    gathering.squares += residual * residual * precision;
+  }
+
+  static void finish(const Gathering& gathering, Growth& growth) {
+    take(gathering.fit, growth);
+    growth.scatter = gathering.squares / gathering.fit.count();
   }
 
   static void take(InverseDepthFit fit, Growth& growth) {
@@ -139,20 +181,22 @@ class PlaneGrower {
   }
 
   void growFrom(int seed) {
-    ++tries_[static_cast<std::size_t>(seed)];
     const CellWindow& window = windows_[static_cast<std::size_t>(seed)];
     Growth growth{window.frame, {}, window.coefficients, window.covariance};
-    for (const bool rough : {true, false}) {
-      spread(seed, rough, growth);
-      if (growth.cells.size() < kLeastCells) return;
-    }
+    const bool found = grows(seed, growth);
+    addTries(seed, 1);
+    if (growth.cells.size() < kLeastCells) return;
+    for (const int index : growth.cells) addTries(index, found ? kOwned : 1);
+  }
+
+  bool grows(int seed, Growth& growth) {
+    spreadRoughly(seed, growth);
+    if (growth.cells.size() < kLeastCells) return false;
+    spread(seed, growth);
+    if (growth.cells.size() < kLeastCells) return false;
     // A part of the pixels of a plane near others is open.
-    if (2.0 * pixelsOf(growth) < rule_.params.min_pixels) return;
-    const bool found =
-        growth.scatter <= kCellScatter * rule_.params.max_scatter && fitAndKeep(seed, growth);
-    for (const int index : growth.cells) {
-      tries_[static_cast<std::size_t>(index)] += found ? kOwned : 1;
-    }
+    return 2.0 * pixelsOf(growth) >= rule_.params.min_pixels &&
+           growth.scatter <= kCellScatter * rule_.params.max_scatter && fitAndKeep(seed, growth);
   }
 
   std::optional<PixelRegion> fitted(const Growth& growth) {
@@ -167,7 +211,7 @@ class PlaneGrower {
     // What edges left the plane askew may have ended it too early.
     Growth wider = growth;
     wider.coefficients = region->coefficients;
-    spread(seed, false, wider);
+    spread(seed, wider);
     if (static_cast<double>(wider.cells.size()) >
         kGrowth * static_cast<double>(growth.cells.size())) {
       growth = wider;
@@ -175,7 +219,7 @@ class PlaneGrower {
     }
     if (!region || !fitter_.isPlane(*region) || isFacet(growth, *region)) return false;
     if (!fitter_.isKept(*region)) fitter_.keep(*region);
-    for (const int index : wider.cells) tries_[static_cast<std::size_t>(index)] = kOwned;
+    for (const int index : wider.cells) addTries(index, kOwned);
     return true;
   }
 
@@ -226,8 +270,8 @@ class PlaneGrower {
   double squared_gate_;
   bool by_windows_ = false;
   std::vector<int> tries_;    ///< per cell: regions with it
-  std::vector<int> reached_;  ///< per cell: the last search that decided on it
-  std::vector<int> member_;   ///< per cell: the last search that added it
+  std::vector<int> reached_;  ///< per cell: the last search that added it
+  CellMask open_;             ///< cells that may be tried once more
   int search_ = 0;
 };
 

@@ -29,6 +29,10 @@ class PixelCells {
 
   int size() const { return static_cast<int>(cells_.size()); }
   const PixelCell& operator[](int index) const { return cells_[static_cast<std::size_t>(index)]; }
+  int rows() const { return rows_; }
+  int cols() const { return cols_; }
+  /// Negative: no cell.
+  int indexAt(int row, int col) const { return at_[static_cast<std::size_t>(row * cols_ + col)]; }
   /// visit(index) for the cells in a square around a cell, itself included.
   template <typename Visit>
   void visitAround(const PixelCell& cell, int radius, const Visit& visit) const {
@@ -36,7 +40,7 @@ class PixelCells {
     const int right = std::min(cols_ - 1, cell.col + radius);
     for (int r = std::max(0, cell.row - radius); r <= bottom; ++r) {
       for (int c = std::max(0, cell.col - radius); c <= right; ++c) {
-        const int index = at_[static_cast<std::size_t>(r * cols_ + c)];
+        const int index = indexAt(r, c);
         if (index >= 0) visit(index);
       }
     }
