@@ -1,5 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The opp-mapping authors
 // SPDX-License-Identifier: BSD-3-Clause
+#include "opp/cloud/oriented_cloud.h"
+
 #include "narrow/add_narrow_planes.h"
 #include "narrow/grow_planes.h"
 #include "narrow/inverse_depth_fit.h"
@@ -387,8 +389,13 @@ TEST(AddNarrowPlanes, OnlyInDepthImages) {
   const Scene scene(0.06, 0.8);
   PointCloud cloud = scene.seen();
   Input input(scene);
-  cloud.columns_wrap = true;
-  addNarrowPlanes(cloud, gridOf(cloud, params), params, input.samples, input.graph);
+  PointCloud turning = cloud;
+  turning.columns_wrap = true;
+  addNarrowPlanes(turning, gridOf(turning, params), params, input.samples, input.graph);
+  cloud.rows = cloud.cols = 0;
+  addNarrowPlanes(cloud, {}, params, input.samples, input.graph);
+  addNarrowPlanes({}, {}, params, input.samples, input.graph);
+  EXPECT_EQ(makeScanSurface(cloud, params.sensor, params.sampling).grid, nullptr);
   EXPECT_EQ(input.graph.nodes.size(), 2U);
   EXPECT_EQ(input.samples.size(), 1U);
 }

@@ -107,7 +107,8 @@ class PlaneGrower {
     CellMask untried = open_;
     const auto tryCell = [&](int row, int col) {
       const int index = cells_.indexAt(row, col);
-      if (isOn(index, false, gathering, growth)) add(index, gathering, growth);
+      const Offset offset = offsetOf(index, gathering, growth);
+      if (isOn(index, offset, 0.0, growth)) add(index, offset, gathering, growth);
     };
     untried.takeAround(cells_[seed].row, cells_[seed].col, 0, tryCell);
     for (std::size_t next = 0; next < growth.cells.size(); ++next) {
@@ -126,9 +127,11 @@ class PlaneGrower {
     const auto tryCell = [&](int index) {
       const auto at = static_cast<std::size_t>(index);
       if (reached_[at] == search_ || tries_[at] >= mostTries()) return;
-      if (!isOn(index, true, gathering, growth)) return;
+      const Offset offset = offsetOf(index, gathering, growth);
+      const Eigen::Vector3d row = offset.ray.row();
+      if (!isOn(index, offset, row.dot(growth.covariance * row), growth)) return;
       reached_[at] = search_;
-      add(index, gathering, growth);
+      add(index, offset, gathering, growth);
       if (gathering.fit.count() < gathering.next_fit) return;
       gathering.next_fit = kGrowth * gathering.fit.count();
       take(gathering.fit, growth);
@@ -141,26 +144,31 @@ class PlaneGrower {
     finish(gathering, growth);
   }
 
-  bool isOn(int index, bool rough, const Gathering& gathering, const Growth& growth) const {
-    const PixelCell& cell = cells_[index];
-    const RayFrame::Ray ray = growth.frame.of(cell.point);
-    if (!(ray.inverse_depth > 0.0)) return false;
-    const Eigen::Vector3d row = ray.row();
-    const double residual = growth.coefficients.dot(row) - ray.inverse_depth;
-    const double variance = cellVariance(cell, ray, gathering.noise, image_) +
-                            (rough ? row.dot(growth.covariance * row) : 0.0);
-    if (!(residual * residual <= squared_gate_ * variance)) return false;
+  /// A cell's inverse depth against that of the plane.
+  struct Offset {
+    RayFrame::Ray ray;
+    double residual, variance;
+  };
+  Offset offsetOf(int index, const Gathering& gathering, const Growth& growth) const {
+    const RayFrame::Ray ray = growth.frame.of(cells_[index].point);
+    return {ray, growth.coefficients.dot(ray.row()) - ray.inverse_depth,
+            cellVariance(cells_[index], ray, gathering.noise, image_)};
+  }
+
+  /// \param unknown variance of the plane's own inverse depth there.
+  bool isOn(int index, const Offset& offset, double unknown, const Growth& growth) const {
+    if (!(offset.ray.inverse_depth > 0.0)) return false;
+    const double gate = squared_gate_ * (offset.variance + unknown);
+    if (!(offset.residual * offset.residual <= gate)) return false;
     return !by_windows_ || windows_[static_cast<std::size_t>(index)].isOn(
                                growth.frame, growth.coefficients, growth.covariance);
   }
 
-  void add(int index, Gathering& gathering, Growth& growth) const {
-    const RayFrame::Ray ray = growth.frame.of(cells_[index].point);
-    const double precision = 1.0 / cellVariance(cells_[index], ray, gathering.noise, image_);
-    const double residual = growth.coefficients.dot(ray.row()) - ray.inverse_depth;
+  static void add(int index, const Offset& offset, Gathering& gathering, Growth& growth) {
+    const double precision = 1.0 / offset.variance;
     growth.cells.push_back(index);
-    gathering.fit.add(ray, precision);
-    gathering.squares += residual * residual * precision;
+    gathering.fit.add(offset.ray, precision);
+    gathering.squares += offset.residual * offset.residual * precision;
   }
 
   static void finish(const Gathering& gathering, Growth& growth) {
