@@ -336,6 +336,37 @@ TEST(Tracker, WhatMotionCallsImpossibleMustExplainMostOfTheScan) {
   }
 }
 
+TEST(Tracker, FollowsAJerkOfLessThanASampleMayBeOff) {
+  test::Random random(1);
+  for (std::uint64_t room = 0; room < 10; ++room) {
+    Started started = startAt(room, poseAt(0.0, 0.0));
+    const auto see = [&](int step, const Eigen::Isometry3d& pose) {
+      ScanFeatures scan = test::scanOfRoom(room, step, pose);
+      scan.timestamp = step / 30.0;
+      return scan;
+    };
+    for (int step = 1; step <= 5; ++step)
+      started.tracker.track(see(step, poseAt(0.0, 0.0)), std::nullopt, started.map);
+    const Eigen::Vector3d jerk = 0.025 * random.unitVector();
+    Eigen::Isometry3d truth = poseAt(0.0, 0.0);
+    truth.translation() += jerk;
+    ScanFeatures scan = see(6, truth);
+    // Samples of what has moved since, such that those which just agree do so without the jerk.
+    OrientedCloud& cloud = scan.cloud_in_body;
+    for (std::size_t i = 0; i < cloud.size(); ++i) {
+      const Eigen::Vector3f normal = cloud.normals[i];
+      const double along = jerk.dot((truth.linear() * normal.cast<double>()).eval());
+      if (random.uniform(0.0, 1.0) > 0.15) continue;
+      const double moved = cloud.spacing + random.uniform(0.0, 0.05);
+      cloud.points[i] += static_cast<float>(std::copysign(moved, along)) * normal;
+      scan.primitives_in_body.labels[i] = -1;
+    }
+    const TrackResult result = started.tracker.track(scan, std::nullopt, started.map);
+    ASSERT_TRUE(result.localized()) << "room " << room << ": " << describe(result.outcome);
+    EXPECT_LT(difference(truth, result.match.map_from_body).norm(), 5e-3) << "room " << room;
+  }
+}
+
 TEST(Tracker, ABodyThatWasCarriedOffIsNotFoundByOneScan) {
   int surprised = 0;
   for (std::uint64_t room = 0; room < 6; ++room) {

@@ -64,14 +64,19 @@ bool movesBeyond(double distance, const ScanFeatures& scan, const Eigen::Isometr
   return sum > distance * distance * static_cast<double>(scan.cloud_in_body.size());
 }
 
+/// So far samples may be off between those of the other scan [m].
+double slackBetween(const ScanFeatures& scan, const Keyframe& newest) {
+  return std::max(newest.features.cloud_in_body.spacing, scan.cloud_in_body.spacing);
+}
+
 /// How a scan fares against the newest keyframe.
 Verification verified(const Eigen::Isometry3d& map_from_body, const ScanFeatures& scan,
                       const Keyframe& newest, const MapperParams& params) {
-  const double slack = std::max(newest.features.cloud_in_body.spacing, scan.cloud_in_body.spacing);
   const SensorModel& sensor = params.primitives.sensor;
   return verifyPose(ScanModel(newest.features, sensor, params.global_alignment),
                     ScanModel(scan, sensor, params.global_alignment),
-                    newest.map_from_body.inverse() * map_from_body, slack, params.global_alignment);
+                    newest.map_from_body.inverse() * map_from_body, slackBetween(scan, newest),
+                    params.global_alignment);
 }
 
 }  // namespace
@@ -223,10 +228,13 @@ bool Tracker::surprises(const PosePrior& predicted, const ScanFeatures& scan,
 /// Little structure beside a bare wall can lead registration off along the wall, and a body that
 /// was carried off may come to a place that looks much the same. What motion calls impossible must
 /// leave little of the scan unexplained and no direction open, and do no worse than what motion
-/// says.
+/// says. A jerk of less than what a sample may be off is followed: both poses agree with the same
+/// samples but for a few, which fell to one or the other by chance.
 bool Tracker::slidAway(const MatchResult& match, TrackOutcome outcome, const PosePrior& predicted,
                        const ScanFeatures& scan, const Keyframe& newest) const {
-  if (predicted.squaredSigmas(match.map_from_body) <= kPossible) return false;
+  if (predicted.squaredSigmas(match.map_from_body) <= kPossible ||
+      !movesBeyond(slackBetween(scan, newest), scan, predicted.map_from_body, match.map_from_body))
+    return false;
   return outcome == TrackOutcome::kUnobserved || match.overlap < params_.frontend.leap_overlap ||
          clarity(verified(match.map_from_body, scan, newest, params_),
                  verified(predicted.map_from_body, scan, newest, params_)) <

@@ -108,9 +108,8 @@ class Tracker {
   /// Whether a pose that was well predicted contradicts the scan: the body was moved.
   bool surprises(const PosePrior& predicted, const ScanFeatures& scan,
                  const Keyframe& newest) const;
-  /// Whether registration left a likely pose for an impossible one that explains little of the
-  /// scan or leaves a direction open, or agrees clearly less: alike says nothing, as the two may be
-  /// millimetres apart.
+  /// Whether registration left a likely pose for an impossible one, not even near it, that explains
+  /// little of the scan or leaves a direction open, or agrees clearly less.
   bool slidAway(const MatchResult& match, TrackOutcome outcome, const PosePrior& predicted,
                 const ScanFeatures& scan, const Keyframe& newest) const;
   /// Whether a body that surprised before is back on its way.
