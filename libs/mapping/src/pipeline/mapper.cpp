@@ -173,7 +173,7 @@ void Mapper::closePassage() {
 }
 
 double Mapper::maxOpenVariance() const {
-  return params_.frontend.max_drift_translation * params_.frontend.max_drift_translation;
+  return params_.loop.loosest_tie * params_.loop.loosest_tie;
 }
 
 void Mapper::splitParts() {

@@ -20,6 +20,8 @@ struct LoopParams {
   double step_sigma = 0.003;
   double drift_ratio = 0.01;
   double level_sigma = degToRad(1.0);
+  /// Half of `agree_translation`: a map is one if its parts are where it has them with 95 %.
+  double loosest_tie = 0.05;
   double connected_ratio = 0.3;
   double search_distance = 2.0;
   double drift_gate = 4.0;
@@ -53,6 +55,9 @@ struct LoopParams {
     f(p.level_sigma, Field{"level_sigma", "rad", 1e-4, 10.0,
                            "floors, tables and ceilings are level this well (standard deviation): "
                            "what ties maps on both sides of a bare wall"});
+    f(p.loosest_tie,
+      Field{"loosest_tie", "m", 1e-4, 100.0,
+            "what is tied worse (standard deviation of what is seen) becomes a map of its own"});
     f(p.connected_ratio,
       Field{"connected_ratio", "", 0.01, 10.0,
             "a keyframe is matched without further proof while its drift is below this share of "
