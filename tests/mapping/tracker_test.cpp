@@ -228,10 +228,37 @@ TEST(Tracker, FollowsABodyPastABareWallAndFindsTheWayOn) {
 
 TEST(Tracker, OncePositionIsForgottenNothingIsLookedFor) {
   Started started = startAt(1, poseAt(0.0, 0.0));
-  ScanFeatures later = test::scanOfRoom(1, 1, poseAt(0.0, 0.0));
+  for (int step = 1; step <= 3; ++step)
+    EXPECT_TRUE(started.tracker
+                    .track(test::scanOfRoom(1, step, poseAt(0.0, 0.0)), std::nullopt, started.map)
+                    .localized());
+  ScanFeatures later = test::scanOfRoom(1, 4, poseAt(0.0, 0.0));
   later.timestamp = 30.0;
   EXPECT_EQ(started.tracker.track(later, std::nullopt, started.map).outcome,
             TrackOutcome::kForgotten);
+}
+
+TEST(Tracker, ScansThatAreAlwaysFarApartAreNoGap) {
+  constexpr double kSeconds = 4.0;
+  int found = 0;
+  for (std::uint64_t room = 0; room < 10; ++room) {
+    Started started = startAt(room, poseAt(0.0, 0.0));
+    for (int step = 1; step <= 3; ++step) {
+      const Eigen::Isometry3d truth = poseAt(1.5 * step, 0.2 * step);
+      ScanFeatures scan = test::scanOfRoom(room, step, truth);
+      scan.timestamp = kSeconds * step;
+      const TrackResult result = started.tracker.track(scan, std::nullopt, started.map);
+      if (!result.localized()) continue;  // nothing is invented
+      ++found;
+      EXPECT_LT(difference(truth, result.match.map_from_body).norm(), 0.01) << "room " << room;
+    }
+    ScanFeatures later = test::scanOfRoom(room, 4, poseAt(0.0, 0.0));
+    later.timestamp = 8.0 * kSeconds;
+    EXPECT_EQ(started.tracker.track(later, std::nullopt, started.map).outcome,
+              TrackOutcome::kForgotten)
+        << "room " << room;
+  }
+  EXPECT_GE(found, 27);
 }
 
 /// After so long from rest a hand may hold a camera the other way round [s].

@@ -28,7 +28,8 @@ struct StateAccess {
   static void serialize(Archive& archive, Tracker& tracker) {
     serialize(archive, tracker.motion_);
     serialize(archive, tracker.since_keyframe_);
-    archive(tracker.lost_, tracker.follows_, tracker.surprised_);
+    archive(tracker.last_scan_, tracker.intervals_, tracker.lost_, tracker.follows_,
+            tracker.surprised_);
   }
 
   template <typename Archive>

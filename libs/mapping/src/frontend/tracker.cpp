@@ -24,6 +24,7 @@ void Tracker::start(const StampedPose& pose,
                     const std::optional<Eigen::Isometry3d>& odom_from_body) {
   motion_.start(pose, odom_from_body);
   beginAtKeyframe();
+  last_scan_ = pose.timestamp;
   follows_ = true;
   surprised_ = false;
   lost_.clear();
@@ -49,6 +50,18 @@ bool excludesHalfTurn(const PosePrior& prior) {
 double positionVariance(const PosePrior& prior) {
   const Matrix6d covariance = prior.information.inverse();
   return largestVariance(covariance.bottomRightCorner<3, 3>());
+}
+
+/// Scans that tell how far apart scans usually are.
+constexpr std::size_t kIntervals = 15;
+/// A gap begins where so many of the usual intervals are missing.
+constexpr double kSkipped = 2.0;
+
+/// Of at least one value.
+double medianOf(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
 }
 
 /// Standard deviation, in the finest voxels (and for turns the angles they fill at one metre), of a
@@ -81,9 +94,16 @@ Verification verified(const Eigen::Isometry3d& map_from_body, const ScanFeatures
 
 }  // namespace
 
-/// Whether a prediction says enough to look for the body in the same map: rooms repeat.
+void Tracker::takeTime(double timestamp) {
+  if (intervals_.size() == kIntervals) intervals_.erase(intervals_.begin());
+  intervals_.push_back(timestamp - std::exchange(last_scan_, timestamp));
+}
+
+/// Whether a prediction says enough to look for the body in the same map: rooms repeat. Scans that
+/// are always far apart are not a gap.
 bool Tracker::guides(const PosePrior& predicted) const {
-  const double farthest = params_.frontend.max_gap * params_.frontend.speed;
+  const double gap = std::max(params_.frontend.max_gap, kSkipped * medianOf(intervals_));
+  const double farthest = gap * params_.frontend.speed;
   return positionVariance(predicted) <= farthest * farthest;
 }
 
@@ -93,6 +113,7 @@ TrackResult Tracker::track(const ScanFeatures& scan,
   TrackResult result;
   if (!local_map_ || map.keyframes.empty()) return result;
   result.outcome = TrackOutcome::kEmptyScan;
+  takeTime(scan.timestamp);
   if (scan.cloud_in_body.size() == 0) return result;
 
   const Keyframe& newest = map.keyframes.back();

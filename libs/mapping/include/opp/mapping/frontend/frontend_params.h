@@ -83,9 +83,11 @@ struct FrontendParams {
             "a scan whose pose is less certain in any direction (standard deviation) is lost"});
     f(p.max_drift_rotation,
       Field{"max_drift_rotation", "rad", 1e-4, 3.1415, "and one that is about any axis"});
-    f(p.max_gap, Field{"max_gap", "s", 1e-3, 1e3,
-                       "a body is not looked for in the same map once its place is predicted worse "
-                       "(standard deviation) than the typical speed takes it in this time"});
+    f(p.max_gap,
+      Field{"max_gap", "s", 1e-3, 1e3,
+            "a body is not looked for in the same map once its place is predicted worse "
+            "(standard deviation) than the typical speed takes it in this time, or in twice that "
+            "between scans if they are farther apart"});
     f(p.leap_overlap,
       Field{"leap_overlap", "", 0.0, 1.0,
             "a scan of which a smaller share agrees is lost if motion says that the "

@@ -100,6 +100,8 @@ class Tracker {
   std::optional<MatchResult> whereExpected(const ScanFeatures& scan, const PosePrior& predicted,
                                            const Keyframe& newest) const;
   bool guides(const PosePrior& predicted) const;
+  /// Takes note of how far apart scans are.
+  void takeTime(double timestamp);
   bool convincing(const MatchResult& match) const;
   TrackOutcome outcomeOf(const MatchResult& match, const ScanFeatures& scan, const PosePrior& moved,
                          const Keyframe& newest) const;
@@ -121,9 +123,11 @@ class Tracker {
   MotionModel motion_;
   MotionModel since_keyframe_;  ///< the same with poses relative to the newest keyframe
   std::optional<LocalMap> local_map_;
-  std::vector<LostScan> lost_;  ///< newest of those since the last localized one
-  bool follows_ = true;         ///< the last scan was localized
-  bool surprised_ = false;      ///< the scan after that contradicted the map where motion put it
+  double last_scan_ = 0.0;         ///< time of the last scan, localized or not [s]
+  std::vector<double> intervals_;  ///< between the scans of late [s]
+  std::vector<LostScan> lost_;     ///< newest of those since the last localized one
+  bool follows_ = true;            ///< the last scan was localized
+  bool surprised_ = false;         ///< the scan after that contradicted the map where motion put it
 };
 
 /// Of several poses that explain a scan alike, the one that motion speaks for by odds of 100 to 1
