@@ -43,9 +43,10 @@ bool ClaimPool::agree(const PlaceClaim& x, const PlaceClaim& y) const {
 std::vector<PlaceClaim> ClaimPool::agreed() const {
   std::vector<PlaceClaim> best = largestGroup(claims_);
   const std::size_t most = claimantsOf(best);
-  const bool certain = std::any_of(best.begin(), best.end(), [&](const PlaceClaim& c) {
-    return c.clarity >= params_.certain_clarity;
-  });
+  const bool certain =
+      one_may_do_ && std::any_of(best.begin(), best.end(), [&](const PlaceClaim& c) {
+        return c.clarity >= params_.certain_clarity;
+      });
   if (!certain && most < static_cast<std::size_t>(confirmations_)) return {};
   std::vector<PlaceClaim> others;
   std::copy_if(claims_.begin(), claims_.end(), std::back_inserter(others),

@@ -152,19 +152,20 @@ class Joiner {
                .value_or(1.0) > params_.global_alignment.max_conflict;
   }
 
-  /// What enough keyframes claim of two parts: fewer where motion says the same.
+  /// What enough keyframes claim of two parts: fewer where motion says the same. One that is
+  /// certain is certain of the kind of place only; within a session, motion must tell that it is
+  /// this one.
   std::vector<PlaceClaim> agreed(Index a, Index b, const std::vector<PlaceClaim>& claims) const {
-    const auto agreedBy = [&](int confirmations) {
-      ClaimPool pool(params_.loop, confirmations);
+    const auto agreedBy = [&](int confirmations, bool one_may_do) {
+      ClaimPool pool(params_.loop, confirmations, one_may_do);
       for (const PlaceClaim& c : claims) pool.add(c);
       return pool.agreed();
     };
-    std::vector<PlaceClaim> result = agreedBy(params_.loop.join_confirmations);
+    const MotionBetween motion(parts_, a, b, params_);
+    std::vector<PlaceClaim> result = agreedBy(params_.loop.join_confirmations, !motion.isKnown());
     if (!result.empty()) return result;
-    result = agreedBy(params_.loop.confirmations);
-    if (!result.empty() &&
-        !MotionBetween(parts_, a, b, params_).expects(result.front().map_a_from_map_b))
-      result.clear();
+    result = agreedBy(params_.loop.confirmations, true);
+    if (!result.empty() && !motion.expects(result.front().map_a_from_map_b)) result.clear();
     return result;
   }
 

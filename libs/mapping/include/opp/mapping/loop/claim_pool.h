@@ -43,8 +43,9 @@ std::size_t claimantsOf(const std::vector<PlaceClaim>& claims);
 class ClaimPool {
  public:
   /// \param confirmations different keyframes that must agree
-  ClaimPool(const LoopParams& params, int confirmations)
-      : params_(params), confirmations_(confirmations) {}
+  /// \param one_may_do whether one that is as clear as `certain_clarity` is enough
+  ClaimPool(const LoopParams& params, int confirmations, bool one_may_do = true)
+      : params_(params), confirmations_(confirmations), one_may_do_(one_may_do) {}
 
   void add(const PlaceClaim& claim) { claims_.push_back(claim); }
   /// Drops the claims for which `unwanted` is true.
@@ -56,7 +57,7 @@ class ClaimPool {
   bool empty() const { return claims_.empty(); }
 
   /// The claims of the pose that most different keyframes agree on, if these are at least
-  /// `confirmations` (or one is as clear as `certain_clarity`) and `rival_ratio` times as many as
+  /// `confirmations` (or one is certain, see the constructor) and `rival_ratio` times as many as
   /// agree on any other; else empty: not proven, or ambiguous. O(claims²).
   std::vector<PlaceClaim> agreed() const;
 
@@ -66,6 +67,7 @@ class ClaimPool {
   std::vector<PlaceClaim> largestGroup(const std::vector<PlaceClaim>& claims) const;
   LoopParams params_;
   int confirmations_;
+  bool one_may_do_;
   std::vector<PlaceClaim> claims_;
 };
 

@@ -19,6 +19,9 @@ class MotionBetween {
   MotionBetween(const std::vector<MapPart>& parts, std::size_t a, std::size_t b,
                 const MapperParams& params);
 
+  /// Whether motion says anything: not of parts of different sessions.
+  bool isKnown() const { return !passages_.empty() || !expectations_.empty(); }
+
   /// Whether the body can have moved so if `a_from_b` is right. O(passages + beginnings).
   bool allows(const Eigen::Isometry3d& a_from_b) const;
 
