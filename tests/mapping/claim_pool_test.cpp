@@ -53,6 +53,20 @@ TEST(ClaimPool, TwoKeyframesThatLookAtEachOtherAreOneWitness) {
   EXPECT_EQ(pool.agreed().size(), 3U) << "two of the other side";
 }
 
+TEST(ClaimPool, CountsWhoSaysTheSame) {
+  test::Random random(3);
+  const Eigen::Isometry3d pose = random.pose(3.0);
+  ClaimPool pool(LoopParams(), 2);
+  EXPECT_EQ(pool.claimantsWith(claimOf(1, pose)), 0U);
+  pool.add(claimOf(1, pose));
+  pool.add(claimOf(1, shifted(pose, 0.02)));
+  pool.add(claimOf(2, shifted(pose, 0.5)));
+  EXPECT_EQ(pool.claimantsWith(claimOf(1, pose)), 1U) << "the same keyframe twice";
+  EXPECT_EQ(pool.claimantsWith(claimOf(2, shifted(pose, 0.5))), 1U) << "elsewhere";
+  pool.add(claimOf(3, shifted(pose, -0.02)));
+  EXPECT_EQ(pool.claimantsWith(claimOf(1, pose)), 2U);
+}
+
 TEST(ClaimPool, IsSilentWhereKeyframesContradictEachOther) {
   ClaimPool pool(LoopParams(), LoopParams().confirmations);
   const Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();

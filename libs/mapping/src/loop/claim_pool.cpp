@@ -40,6 +40,13 @@ bool ClaimPool::agree(const PlaceClaim& x, const PlaceClaim& y) const {
   return true;
 }
 
+std::size_t ClaimPool::claimantsWith(const PlaceClaim& claim) const {
+  std::vector<PlaceClaim> group;
+  std::copy_if(claims_.begin(), claims_.end(), std::back_inserter(group),
+               [&](const PlaceClaim& other) { return agree(claim, other); });
+  return claimantsOf(group);
+}
+
 std::vector<PlaceClaim> ClaimPool::agreed() const {
   std::vector<PlaceClaim> best = largestGroup(claims_);
   const std::size_t most = claimantsOf(best);

@@ -129,15 +129,25 @@ class Joiner {
   }
 
   /// Drops what motion denies, and then all claims about places that have others like them, but for
-  /// those where motion tells which of them it is.
+  /// those where motion tells which of them it is. As many keyframes must mistake a place as would
+  /// have to recognize it: one that is deceived tells more of itself than of the place.
   void dropRefuted() {
     std::map<std::pair<Index, Index>, MotionBetween> motions;
+    std::map<std::pair<Index, Index>, ClaimPool> denied;
     drop([&](const PartClaim& c) {
-      const auto motion = motions.try_emplace({c.a, c.b}, parts_, c.a, c.b, params_).first;
-      const bool denied = !motion->second.allows(c.claim.map_a_from_map_b);
-      if (denied) refute(c);
-      return denied;
+      const std::pair<Index, Index> between(c.a, c.b);
+      const auto motion = motions.try_emplace(between, parts_, c.a, c.b, params_).first;
+      if (motion->second.allows(c.claim.map_a_from_map_b)) return false;
+      denied.try_emplace(between, params_.loop, params_.loop.confirmations)
+          .first->second.add(c.claim);
+      return true;
     });
+    for (const auto& [between, pool] : denied) {
+      for (const PlaceClaim& claim : pool.claims()) {
+        if (pool.claimantsWith(claim) >= Index(params_.loop.confirmations))
+          refute({between.first, between.second, claim});
+      }
+    }
     const double reach = params_.loop.search_distance;
     drop([&](const PartClaim& c) {
       if (motions.at({c.a, c.b}).expects(c.claim.map_a_from_map_b)) return false;
