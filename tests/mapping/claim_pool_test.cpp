@@ -53,18 +53,19 @@ TEST(ClaimPool, TwoKeyframesThatLookAtEachOtherAreOneWitness) {
   EXPECT_EQ(pool.agreed().size(), 3U) << "two of the other side";
 }
 
-TEST(ClaimPool, CountsWhoSaysTheSame) {
+TEST(ClaimPool, ConfirmsWhatDifferentKeyframesSayAlike) {
   test::Random random(3);
   const Eigen::Isometry3d pose = random.pose(3.0);
   ClaimPool pool(LoopParams(), 2);
-  EXPECT_EQ(pool.claimantsWith(claimOf(1, pose)), 0U);
+  EXPECT_TRUE(pool.confirmed().empty());
   pool.add(claimOf(1, pose));
   pool.add(claimOf(1, shifted(pose, 0.02)));
   pool.add(claimOf(2, shifted(pose, 0.5)));
-  EXPECT_EQ(pool.claimantsWith(claimOf(1, pose)), 1U) << "the same keyframe twice";
-  EXPECT_EQ(pool.claimantsWith(claimOf(2, shifted(pose, 0.5))), 1U) << "elsewhere";
+  EXPECT_TRUE(pool.confirmed().empty()) << "the same keyframe twice, and one elsewhere";
   pool.add(claimOf(3, shifted(pose, -0.02)));
-  EXPECT_EQ(pool.claimantsWith(claimOf(1, pose)), 2U);
+  const std::vector<PlaceClaim> confirmed = pool.confirmed();
+  ASSERT_EQ(confirmed.size(), 3U);
+  for (const PlaceClaim& claim : confirmed) EXPECT_NE(claim.keyframe_b, 2);
 }
 
 TEST(ClaimPool, IsSilentWhereKeyframesContradictEachOther) {

@@ -40,11 +40,21 @@ bool ClaimPool::agree(const PlaceClaim& x, const PlaceClaim& y) const {
   return true;
 }
 
-std::size_t ClaimPool::claimantsWith(const PlaceClaim& claim) const {
-  std::vector<PlaceClaim> group;
-  std::copy_if(claims_.begin(), claims_.end(), std::back_inserter(group),
-               [&](const PlaceClaim& other) { return agree(claim, other); });
-  return claimantsOf(group);
+std::vector<PlaceClaim> ClaimPool::groupOf(const PlaceClaim& claim,
+                                           const std::vector<PlaceClaim>& claims) const {
+  std::vector<PlaceClaim> group{claim};
+  std::copy_if(claims.begin(), claims.end(), std::back_inserter(group),
+               [&](const PlaceClaim& other) { return &other != &claim && agree(claim, other); });
+  return group;
+}
+
+std::vector<PlaceClaim> ClaimPool::confirmed() const {
+  std::vector<PlaceClaim> result;
+  std::copy_if(
+      claims_.begin(), claims_.end(), std::back_inserter(result), [&](const PlaceClaim& claim) {
+        return claimantsOf(groupOf(claim, claims_)) >= static_cast<std::size_t>(confirmations_);
+      });
+  return result;
 }
 
 std::vector<PlaceClaim> ClaimPool::agreed() const {
@@ -68,9 +78,7 @@ std::vector<PlaceClaim> ClaimPool::largestGroup(const std::vector<PlaceClaim>& c
   std::vector<PlaceClaim> largest;
   std::size_t most = 0;
   for (const PlaceClaim& claim : claims) {
-    std::vector<PlaceClaim> group{claim};
-    std::copy_if(claims.begin(), claims.end(), std::back_inserter(group),
-                 [&](const PlaceClaim& other) { return &other != &claim && agree(claim, other); });
+    std::vector<PlaceClaim> group = groupOf(claim, claims);
     const std::size_t claimants = claimantsOf(group);
     if (claimants <= most) continue;
     most = claimants;

@@ -117,6 +117,11 @@ class Joiner {
     return claims;
   }
 
+  /// As the parts are until the next two are joined.
+  const MotionBetween& motionBetween(Index a, Index b) const {
+    return motions_.try_emplace({a, b}, parts_, a, b, params_).first->second;
+  }
+
   /// The place was recognized where it cannot be.
   void refute(const PartClaim& c) {
     parts_[c.a].markRepeated(c.claim.keyframe_a);
@@ -132,25 +137,20 @@ class Joiner {
   /// those where motion tells which of them it is. As many keyframes must mistake a place as would
   /// have to recognize it: one that is deceived tells more of itself than of the place.
   void dropRefuted() {
-    std::map<std::pair<Index, Index>, MotionBetween> motions;
     std::map<std::pair<Index, Index>, ClaimPool> denied;
     drop([&](const PartClaim& c) {
-      const std::pair<Index, Index> between(c.a, c.b);
-      const auto motion = motions.try_emplace(between, parts_, c.a, c.b, params_).first;
-      if (motion->second.allows(c.claim.map_a_from_map_b)) return false;
-      denied.try_emplace(between, params_.loop, params_.loop.confirmations)
+      if (motionBetween(c.a, c.b).allows(c.claim.map_a_from_map_b)) return false;
+      denied.try_emplace({c.a, c.b}, params_.loop, params_.loop.confirmations)
           .first->second.add(c.claim);
       return true;
     });
     for (const auto& [between, pool] : denied) {
-      for (const PlaceClaim& claim : pool.claims()) {
-        if (pool.claimantsWith(claim) >= Index(params_.loop.confirmations))
-          refute({between.first, between.second, claim});
-      }
+      for (const PlaceClaim& claim : pool.confirmed())
+        refute({between.first, between.second, claim});
     }
     const double reach = params_.loop.search_distance;
     drop([&](const PartClaim& c) {
-      if (motions.at({c.a, c.b}).expects(c.claim.map_a_from_map_b)) return false;
+      if (motionBetween(c.a, c.b).expects(c.claim.map_a_from_map_b)) return false;
       return parts_[c.a].seesRepeated(c.claim.keyframe_a, reach) ||
              parts_[c.b].seesRepeated(c.claim.keyframe_b, reach);
     });
@@ -171,7 +171,7 @@ class Joiner {
       for (const PlaceClaim& c : claims) pool.add(c);
       return pool.agreed();
     };
-    const MotionBetween motion(parts_, a, b, params_);
+    const MotionBetween& motion = motionBetween(a, b);
     std::vector<PlaceClaim> result = agreedBy(params_.loop.join_confirmations, !motion.isKnown());
     if (!result.empty()) return result;
     result = agreedBy(params_.loop.confirmations, true);
@@ -201,8 +201,7 @@ class Joiner {
       if (shared != y.a && shared != y.b) continue;
       const Index p = x.a + x.b - shared, q = y.a + y.b - shared;
       if (p == q) return false;
-      return !MotionBetween(parts_, p, q, params_)
-                  .allows(x.from(shared).inverse() * y.from(shared));
+      return !motionBetween(p, q).allows(x.from(shared).inverse() * y.from(shared));
     }
     return false;
   }
@@ -219,7 +218,7 @@ class Joiner {
         continue;
       }
       if (fitsAnotherWay(parts_[first.a].map, parts_[first.b].map, first.claims,
-                         MotionBetween(parts_, first.a, first.b, params_), params_)) {
+                         motionBetween(first.a, first.b), params_)) {
         drop([&](const PartClaim& c) { return first.isAbout(c); });
         continue;
       }
@@ -250,6 +249,7 @@ class Joiner {
     host.indexFrom(Index(first));
     host.history.merge(guest.history);
     parts_.erase(parts_.begin() + static_cast<std::ptrdiff_t>(b));
+    motions_.clear();
     renumber(a, b, first);
     return true;
   }
@@ -279,6 +279,7 @@ class Joiner {
   std::vector<MapPart>& parts_;
   const MapperParams& params_;
   std::vector<PartClaim> claims_;
+  mutable std::map<std::pair<Index, Index>, MotionBetween> motions_;  ///< see `motionBetween`
 };
 
 }  // namespace

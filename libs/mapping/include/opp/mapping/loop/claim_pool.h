@@ -54,12 +54,10 @@ class ClaimPool {
     claims_.erase(std::remove_if(claims_.begin(), claims_.end(), unwanted), claims_.end());
   }
   void clear() { claims_.clear(); }
-  /// Whether two claims say the same within `agree_translation` and `agree_rotation`.
-  bool agree(const PlaceClaim& x, const PlaceClaim& y) const;
-  /// How many different keyframes claim the same, see `claimantsOf`. O(claims).
-  std::size_t claimantsWith(const PlaceClaim& claim) const;
   bool empty() const { return claims_.empty(); }
-  const std::vector<PlaceClaim>& claims() const { return claims_; }
+
+  /// The claims that at least `confirmations` different keyframes agree on. O(claims²).
+  std::vector<PlaceClaim> confirmed() const;
 
   /// The claims of the pose that most different keyframes agree on, if these are at least
   /// `confirmations` (or one is certain, see the constructor) and `rival_ratio` times as many as
@@ -68,6 +66,10 @@ class ClaimPool {
 
  private:
   friend struct StateAccess;  // checkpoints
+  bool agree(const PlaceClaim& x, const PlaceClaim& y) const;
+  /// The claim, and those of `claims` that agree with it.
+  std::vector<PlaceClaim> groupOf(const PlaceClaim& claim,
+                                  const std::vector<PlaceClaim>& claims) const;
   std::vector<PlaceClaim> largestGroup(const std::vector<PlaceClaim>& claims) const;
   LoopParams params_;
   int confirmations_;
