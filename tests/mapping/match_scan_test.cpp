@@ -12,6 +12,7 @@
 #include <Eigen/Eigenvalues>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numeric>
 
@@ -271,6 +272,44 @@ TEST(MatchScan, DoesNotSlideAlongAWallToSuitALandmarkThatIsSlightlyOff) {
     EXPECT_NEAR(error.y(), 0.0, 0.02) << "seed " << seed;
     EXPECT_NEAR(error.z(), 0.0, 0.02) << "seed " << seed;
     EXPECT_GT(std::sqrt(result.covariance(4, 4)), 0.1) << "seed " << seed;
+  }
+}
+
+/// Whether a shelf 3.5 cm above one of the map is taken for that.
+bool takesShelfForOneBelow(std::uint64_t seed, double distortion) {
+  const auto seenWith = [&](double height, std::uint64_t noise) {
+    test::Rectangles room = test::roomSides({-2.5, -2.0, 0.0}, {2.5, 2.0, 2.5});
+    room.push_back({{2.1, 0.0, height}, {0.3, 0.0, 0.0}, {0.0, 0.5, 0.0}});
+    test::SyntheticOptions noisy = options(0.003);
+    noisy.seed = noise;
+    return test::trueFeatures(
+        test::sampleScene(room, {0.0, 0.0, 1.6}, Eigen::Isometry3d::Identity(), noisy));
+  };
+  const ScanFeatures target = seenWith(1.0, 2 * seed), scan = seenWith(1.035, 2 * seed + 1);
+  SensorModel sensor;
+  sensor.distortion_quadratic = distortion;
+  LocalMap map(kSpacing, sensor, RegistrationParams{});
+  std::vector<int> landmarks(target.primitives_in_body.planes.size());
+  std::iota(landmarks.begin(), landmarks.end(), 0);
+  map.insert(target, Eigen::Isometry3d::Identity(), landmarks);
+  std::vector<Plane> planes;
+  for (const PlanePrimitive& p : target.primitives_in_body.planes) planes.push_back(p.plane);
+  map.setLandmarks(planes);
+  PosePrior prior;
+  prior.information = 1e4 * Matrix6d::Identity();
+  const MatchResult result = matchScan(scan, map, prior, RegistrationParams{});
+  EXPECT_GE(result.planes.size(), 5U) << "the sides of the room that are seen";
+  return std::any_of(result.planes.begin(), result.planes.end(), [&](const PlaneAssociation& a) {
+    const auto plane = static_cast<std::size_t>(a.scan_plane);
+    const Plane& seen = scan.primitives_in_body.planes[plane].plane;
+    return std::abs(seen.signedDistance({2.1, 0.0, 1.035})) < 0.01;
+  });
+}
+
+TEST(MatchScan, TakesAPlaneForOneNearItOnlyIfDistortionCanHaveSetThemApart) {
+  for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+    EXPECT_FALSE(takesShelfForOneBelow(seed, 0.0)) << "seed " << seed;
+    EXPECT_TRUE(takesShelfForOneBelow(seed, 0.004)) << "seed " << seed;
   }
 }
 

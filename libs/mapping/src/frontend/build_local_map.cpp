@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "opp/mapping/frontend/build_local_map.h"
 
+#include "frontend/shown_distortion.h"
+
 #include <algorithm>
 #include <utility>
 
@@ -14,7 +16,7 @@ LocalMap localMapOf(const MapState& map, const std::vector<int>& keyframes,
     spacing = std::max(spacing,
                        map.keyframes[static_cast<std::size_t>(id)].features.cloud_in_body.spacing);
   }
-  LocalMap local(spacing, params.primitives.sensor, params.registration);
+  LocalMap local(spacing, withShownDistortion(params.primitives.sensor, map), params.registration);
   for (const int id : keyframes) {
     const Keyframe& keyframe = map.keyframes[static_cast<std::size_t>(id)];
     local.insert(keyframe.features, keyframe.map_from_body, keyframe.landmark_of_plane);

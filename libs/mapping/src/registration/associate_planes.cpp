@@ -32,11 +32,14 @@ std::vector<Votes> vote(const std::vector<ScanPoint>& points,
   return votes;
 }
 
-/// The samples' root mean square distance to the landmark, over its noise, is within the gate.
-bool fits(const ScanPlane& plane, const Plane& landmark_in_body, double gate_sigmas) {
-  const double squared_sigmas =
-      plane.moments_in_body.squaredError(landmark_in_body) / plane.samples;
-  return squared_sigmas < gate_sigmas * gate_sigmas;
+/// The samples' root mean square distance to the landmark, over noise and distortion, is within the
+/// gate.
+bool fits(const ScanPlane& plane, const Plane& landmark_in_body, const SensorModel& sensor,
+          double gate_sigmas) {
+  const PointMoments& moments = plane.moments_in_body;
+  const double distortion = sensor.distortion(moments.mean().norm());
+  return moments.squaredError(landmark_in_body) <
+         gate_sigmas * gate_sigmas * (plane.samples + distortion * distortion * moments.weight());
 }
 
 }  // namespace
@@ -54,7 +57,8 @@ void associatePlanes(const std::vector<ScanPoint>& points, const Eigen::Isometry
       continue;
     }
     const Plane& landmark = map.landmarkPlanes()[Index(best->first)];
-    if (fits(planes[k], transformed(map_from_body.inverse(), landmark), params.plane_gate_sigmas))
+    if (fits(planes[k], transformed(map_from_body.inverse(), landmark), map.sensor(),
+             params.plane_gate_sigmas))
       planes[k].landmark = best->first;
   }
 }

@@ -34,7 +34,7 @@ class LocalMap {
   /// Replaces the landmarks' planes; index = landmark id. All that were inserted need one.
   void setLandmarks(std::vector<Plane> planes_in_map);
 
-  /// Noise of the scans.
+  /// Noise of the scans, and their distortion as far as the map shows it.
   const SensorModel& sensor() const { return sensor_; }
   const LocalLevel& fine() const { return levels_.front(); }
   /// Fine to coarse, at least one.

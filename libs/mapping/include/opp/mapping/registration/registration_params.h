@@ -29,7 +29,7 @@ struct RegistrationParams {
   double rotation_tolerance = 2e-5;
   double translation_tolerance = 2e-5;
   double plane_vote_share = 0.3;
-  double plane_gate_sigmas = 6.0;
+  double plane_gate_sigmas = 3.0;
 
   template <typename Self, typename F>
   static void visit(Self&& p, F&& f) {
@@ -66,7 +66,8 @@ struct RegistrationParams {
             "a scan's plane is a landmark if this share of its matched samples lie on it"});
     f(p.plane_gate_sigmas,
       Field{"plane_gate_sigmas", "", 0.5, 100.0,
-            "and if their distance (rms) is below so many sigmas of a sample"});
+            "and if their distance (rms) is below so many sigmas of a sample, of its noise and "
+            "of the distortion that the map shows"});
   }
 };
 
