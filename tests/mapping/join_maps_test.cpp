@@ -23,6 +23,8 @@ MapState randomMap(test::Random& random, int keyframes) {
         {Plane::fromPointNormal(random.vector(3.0), random.unitVector()), {{k, 0}}});
     map.factors.planes.push_back({k, k, {}, 10.0});
     map.scans.push_back({0.1 * k, 0, static_cast<std::size_t>(k), k, random.pose(1.0)});
+    map.scans.back().open.emplace().next = k == 0 ? -1 : k - 1;
+    map.scans.back().open->gain = random.uniform(0.0, 1.0) * Matrix6d::Identity();
     if (k == 0) continue;
     map.links.push_back({k - 1, k, 0.01});
     map.factors.relative_poses.push_back(
@@ -55,6 +57,10 @@ TEST(AppendMap, MovesAndRenumbersEverything) {
       EXPECT_EQ(map.factors.planes[id].keyframe, static_cast<int>(id));
       EXPECT_EQ(map.factors.planes[id].landmark, static_cast<int>(id));
       EXPECT_EQ(map.scans[id].keyframe, static_cast<int>(id));
+      EXPECT_LT(
+          difference(first_from_other * poseOf(other, other.scans[k]), poseOf(map, map.scans[id]))
+              .norm(),
+          1e-9);
       // A plane seen from a keyframe is where it was.
       const Plane before = transformed(other.keyframes[k].map_from_body.inverse(),
                                        other.landmarks.planes[k].plane_in_map);

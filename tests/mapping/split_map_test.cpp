@@ -36,6 +36,7 @@ MapState row(int keyframes, const std::vector<int>& loose, int direction) {
     map.factors.planes.push_back({k, 0, {}, 10.0});
     map.factors.planes.push_back({k, k + 1, {}, 10.0});
     map.scans.push_back({0.1 * k, 0, std::size_t(2 * k), k, Eigen::Isometry3d::Identity()});
+    if (k + 1 < keyframes) map.scans.back().open.emplace().next = k + 1;
     map.factors.orthogonalities.push_back({{0, k + 1}});
     if (k == 0) continue;
     const bool open = std::count(loose.begin(), loose.end(), k - 1) > 0;
@@ -82,6 +83,9 @@ TEST(SplitMap, CutsWhereADirectionIsOpen) {
       EXPECT_EQ(second.scans[std::size_t(k)].keyframe, k);
       EXPECT_EQ(second.scans[std::size_t(k)].scan_index, std::size_t(2 * k + 4));
     }
+    EXPECT_EQ(parts[0].scans[0].open->next, 1);
+    EXPECT_EQ(parts[0].scans[1].open->next, -1) << "which went to the other part";
+    EXPECT_EQ(second.scans[0].open->next, 1);
     EXPECT_EQ(second.links.size(), 2U);
     EXPECT_EQ(second.factors.planes.size(), 6U);
     EXPECT_EQ(second.factors.relative_poses.size(), 2U);

@@ -6,12 +6,14 @@
 #include "opp/mapping/core/run_report.h"
 #include "opp/mapping/frontend/lost_scans.h"
 #include "opp/mapping/frontend/motion_model.h"
+#include "opp/mapping/frontend/open_passage.h"
 #include "opp/mapping/loop/claim_pool.h"
 #include "opp/mapping/loop/map_part.h"
 
 #include "checkpoint/archive_primitives.h"
 
 #include <cereal/types/map.hpp>
+#include <cereal/types/optional.hpp>
 #include <cereal/types/set.hpp>
 #include <cereal/types/string.hpp>
 #include <cereal/types/utility.hpp>
@@ -117,9 +119,15 @@ void serialize(Archive& archive, KeyframeLink& value) {
 }
 
 template <typename Archive>
+void serialize(Archive& archive, OpenPose& value) {
+  auto& [covariance, covariance_between, next, keyframe_from_next, gain] = value;
+  archive(covariance, covariance_between, next, keyframe_from_next, gain);
+}
+
+template <typename Archive>
 void serialize(Archive& archive, LocalizedScan& value) {
-  auto& [timestamp, session, scan_index, keyframe, keyframe_from_body] = value;
-  archive(timestamp, session, scan_index, keyframe, keyframe_from_body);
+  auto& [timestamp, session, scan_index, keyframe, keyframe_from_body, open] = value;
+  archive(timestamp, session, scan_index, keyframe, keyframe_from_body, open);
 }
 
 template <typename Archive>
@@ -156,6 +164,18 @@ template <typename Archive>
 void serialize(Archive& archive, MotionState& value) {
   auto& [map_from_body, rate, covariance] = value;
   archive(map_from_body, rate, covariance);
+}
+
+template <typename Archive>
+void serialize(Archive& archive, MotionStep& value) {
+  auto& [predicted, shared, found] = value;
+  archive(predicted, shared, found);
+}
+
+template <typename Archive>
+void serialize(Archive& archive, PassedScan& value) {
+  auto& [scan, step] = value;
+  archive(scan, step);
 }
 
 template <typename Archive>

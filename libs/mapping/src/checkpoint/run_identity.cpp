@@ -19,7 +19,7 @@ namespace opp::mapping {
 namespace {
 
 /// Changes whenever what archive_primitives.h, archive_map.h or state_access.h store does.
-constexpr int kFormat = 7;
+constexpr int kFormat = 8;
 
 std::string timeText(const timespec& time) {
   tm date{};

@@ -27,7 +27,6 @@ struct StateAccess {
   template <typename Archive>
   static void serialize(Archive& archive, Tracker& tracker) {
     serialize(archive, tracker.motion_);
-    serialize(archive, tracker.since_keyframe_);
     archive(tracker.last_scan_, tracker.intervals_, tracker.lost_, tracker.follows_,
             tracker.surprised_);
   }
@@ -43,7 +42,7 @@ struct StateAccess {
             mapper.next_part_);
     serialize(archive, mapper.tracker_);
     serialize(archive, mapper.loop_closer_);
-    serializePassage(archive, mapper.passage_);
+    serialize(archive, mapper.passages_);
     serializeParts(archive, mapper);
     if constexpr (Archive::is_loading::value) {
       if (mapper.local_.empty()) return;
@@ -53,16 +52,32 @@ struct StateAccess {
 
  private:
   template <typename Archive>
-  static void serializePassage(Archive& archive, std::optional<OpenPassage>& passage) {
-    bool is_open = passage.has_value();
-    archive(is_open);
-    if (!is_open) return;
-    if constexpr (Archive::is_loading::value) passage.emplace(0, 0.0, MotionState(), PosePrior());
-    archive(passage->keyframe_, passage->timestamp_, passage->first_from_body_, passage->tied_);
-    std::size_t count = passage->later_.size();
+  static void serialize(Archive& archive, OpenPassage::Leg& leg) {
+    archive(leg.keyframe, leg.timestamp, leg.tied, leg.begins, leg.scans);
+  }
+
+  template <typename Archive>
+  static void serialize(Archive& archive, OpenPassage::LaterPose& later) {
+    archive(later.pose, later.information);
+  }
+
+  template <typename Archive, typename T>
+  static void serializeAll(Archive& archive, std::vector<T>& values) {
+    std::size_t count = values.size();
     archive(count);
-    passage->later_.resize(count);
-    for (auto& [pose, information] : passage->later_) archive(pose, information);
+    values.resize(count);
+    for (T& value : values) serialize(archive, value);
+  }
+
+  template <typename Archive>
+  static void serialize(Archive& archive, PassageWatch& watch) {
+    bool is_passed = watch.passage_.has_value();
+    archive(watch.begins_, watch.is_known_, watch.open_, is_passed);
+    serialize(archive, watch.since_keyframe_);
+    if (!is_passed) return;
+    if constexpr (Archive::is_loading::value) watch.passage_.emplace();
+    serializeAll(archive, watch.passage_->legs_);
+    serializeAll(archive, watch.passage_->later_);
   }
 
   template <typename Archive>

@@ -19,6 +19,12 @@ Vector6d perKind(double of_rotation, double of_translation) {
   return vector;
 }
 
+MotionState::Covariance turnsOfState(const Eigen::Isometry3d& to_from) {
+  MotionState::Covariance turns = MotionState::Covariance::Zero();
+  turns.topLeftCorner<6, 6>() = turns.bottomRightCorner<6, 6>() = turned(to_from.linear());
+  return turns;
+}
+
 /// Stamps that are equal or run backwards must not give infinite velocities.
 constexpr double kMinTimeStep = 1e-3;
 /// A scan tells how far a prediction was off if its own variance is below this share of that.
@@ -41,10 +47,15 @@ Vector6d typicalMotion(double seconds, const FrontendParams& params) {
 }
 
 MotionState inFrame(const Eigen::Isometry3d& frame_from_map, const MotionState& state) {
-  MotionState::Covariance turns = MotionState::Covariance::Zero();
-  turns.topLeftCorner<6, 6>() = turns.bottomRightCorner<6, 6>() = turned(frame_from_map.linear());
+  const MotionState::Covariance turns = turnsOfState(frame_from_map);
   return {frame_from_map * state.map_from_body, turned(frame_from_map.linear()) * state.rate,
           turns * state.covariance * turns.transpose()};
+}
+
+MotionStep inFrame(const Eigen::Isometry3d& frame_from_map, const MotionStep& step) {
+  const MotionState::Covariance turns = turnsOfState(frame_from_map);
+  return {inFrame(frame_from_map, step.predicted), turns * step.shared * turns.transpose(),
+          inFrame(frame_from_map, step.found)};
 }
 
 void MotionModel::start(const StampedPose& pose,
@@ -58,11 +69,15 @@ void MotionModel::start(const StampedPose& pose,
   setAnchor();
 }
 
-void MotionModel::update(const StampedPose& pose,
-                         const std::optional<Eigen::Isometry3d>& odom_from_body,
-                         const Matrix6d& information) {
-  if (!started_) return start(pose, odom_from_body);
-  MotionState state = predictState(pose.timestamp, odom_from_body);
+MotionStep MotionModel::update(const StampedPose& pose,
+                               const std::optional<Eigen::Isometry3d>& odom_from_body,
+                               const Matrix6d& information) {
+  if (!started_) {
+    start(pose, odom_from_body);
+    return {};
+  }
+  MotionStep step = predictStep(pose.timestamp, odom_from_body);
+  MotionState state = step.predicted;
   if (!odom_from_body) learn(state, pose.map_from_body, information);
   const Matrix6d before = state.covariance.topLeftCorner<6, 6>();
   const Matrix6d before_inverse = inverse(before);
@@ -76,9 +91,10 @@ void MotionModel::update(const StampedPose& pose,
   state.covariance.topRightCorner<6, 6>() = after * gain.transpose();
   state.covariance = 0.5 * (state.covariance + state.covariance.transpose()).eval();
   state.map_from_body = pose.map_from_body;
-  last_ = state;
+  last_ = step.found = state;
   timestamp_ = pose.timestamp;
   last_odom_from_body_ = odom_from_body;
+  return step;
 }
 
 void MotionModel::correct(const Eigen::Isometry3d& last_pose) {
@@ -96,15 +112,21 @@ PosePrior MotionModel::predict(double timestamp,
 
 MotionState MotionModel::predictState(
     double timestamp, const std::optional<Eigen::Isometry3d>& odom_from_body) const {
+  return predictStep(timestamp, odom_from_body).predicted;
+}
+
+MotionStep MotionModel::predictStep(double timestamp,
+                                    const std::optional<Eigen::Isometry3d>& odom_from_body) const {
   const double step = std::max(timestamp - timestamp_, kMinTimeStep);
   if (odom_from_body && last_odom_from_body_)
     return carriedByOdometry(step, last_odom_from_body_->inverse() * *odom_from_body);
   return carriedByVelocity(step);
 }
 
-MotionState MotionModel::carriedByOdometry(double step,
-                                           const Eigen::Isometry3d& last_from_now) const {
-  MotionState state;
+MotionStep MotionModel::carriedByOdometry(double step,
+                                          const Eigen::Isometry3d& last_from_now) const {
+  MotionStep result;
+  MotionState& state = result.predicted;
   state.map_from_body = normalized(last_.map_from_body * last_from_now);
   state.rate = difference(last_.map_from_body, state.map_from_body) / step;
   const Vector6d variance = odometryVariance(last_from_now);
@@ -112,22 +134,25 @@ MotionState MotionModel::carriedByOdometry(double step,
   state.covariance.diagonal().head<6>() += variance;
   // Should the odometry end, its last speed is the best guess.
   state.covariance.diagonal().tail<6>() = variance / (step * step) + agility() * step;
-  return state;
+  result.shared.leftCols<6>() = last_.covariance.leftCols<6>();
+  return result;
 }
 
-MotionState MotionModel::carriedByVelocity(double step) const {
-  MotionState state;
+MotionStep MotionModel::carriedByVelocity(double step) const {
+  MotionStep result;
+  MotionState& state = result.predicted;
   state.map_from_body = retract(last_.map_from_body, step * last_.rate);
   state.rate = last_.rate;
   MotionState::Covariance carry = MotionState::Covariance::Identity();
   carry.topRightCorner<6, 6>() = step * Matrix6d::Identity();
-  state.covariance = carry * last_.covariance * carry.transpose();
+  result.shared = last_.covariance * carry.transpose();
+  state.covariance = carry * result.shared;
   const Vector6d density = agility();
   state.covariance.topLeftCorner<6, 6>().diagonal() += density * step * step * step / 3.0;
   state.covariance.topRightCorner<6, 6>().diagonal() += density * step * step / 2.0;
   state.covariance.bottomLeftCorner<6, 6>().diagonal() += density * step * step / 2.0;
   state.covariance.bottomRightCorner<6, 6>().diagonal() += density * step;
-  return state;
+  return result;
 }
 
 Vector6d MotionModel::odometryVariance(const Eigen::Isometry3d& first_from_second) const {

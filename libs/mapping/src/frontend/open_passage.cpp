@@ -2,60 +2,100 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "opp/mapping/frontend/open_passage.h"
 
+#include "frontend/motion_smoother.h"
 #include "registration/observability.h"
 
 #include <Eigen/Cholesky>
 
 #include <algorithm>
-#include <cmath>
-#include <optional>
 #include <utility>
 
 namespace opp::mapping {
 namespace {
 
+using Index = std::size_t;
+
 /// Scans after which a velocity is known about as well as accelerations allow.
-constexpr std::size_t kEnoughScans = 4;
+constexpr Index kEnoughScans = 4;
 
 /// So certain is a frame of itself [1/rad², 1/m²].
 constexpr double kExact = 1e12;
 
-/// What linearization in `givenRate` leaves out, R·v ≈ v + ω × v, at one standard deviation of ω:
-/// at most (Σσ²/2)·|v|, added as a variance (second-order filter: Jazwinski 1970, "Stochastic
-/// Processes and Filtering Theory", 9.3).
-double variationOfTurned(const Eigen::Vector3d& v, const Eigen::Matrix3d& covariance_of_turn) {
-  return std::pow(0.5 * covariance_of_turn.trace() * v.norm(), 2);
+std::vector<const MotionStep*> stepsOf(const std::vector<PassedScan>& scans) {
+  std::vector<const MotionStep*> steps;
+  for (const PassedScan& scan : scans) steps.push_back(&scan.step);
+  return steps;
 }
 
-/// A state that has also the rate of `measured`, in whose axes it was placed where the state
-/// predicts its pose: turning the one turns the other. A step of a Kalman filter.
-MotionState givenRate(const MotionState& state, const MotionState& measured) {
-  Eigen::Matrix<double, 6, 12> by_state = Eigen::Matrix<double, 6, 12>::Zero();
-  by_state.topLeftCorner<3, 3>() = crossMatrix(measured.rate.head<3>());
-  by_state.block<3, 3>(3, 0) = crossMatrix(measured.rate.tail<3>());
-  by_state.rightCols<6>().setIdentity();
-  const Eigen::Matrix<double, 12, 6> shared = state.covariance * by_state.transpose();
-  Matrix6d innovation = by_state * shared + measured.covariance.bottomRightCorner<6, 6>();
+Matrix6d poseCovariance(const MotionState& state) { return state.covariance.topLeftCorner<6, 6>(); }
+
+/// What the legs would leave open if they were independent, in the frame where the passage starts.
+/// \param own of each leg alone, in the frame of its first keyframe
+Matrix6d composed(const std::vector<MotionState>& ends, const std::vector<MotionState>& own) {
+  Matrix6d covariance = Matrix6d::Zero();
+  for (Index k = 0; k < ends.size(); ++k) {
+    const Eigen::Isometry3d start_from_first =
+        k > 0 ? ends[k - 1].map_from_body : Eigen::Isometry3d::Identity();
+    const Matrix6d swing =
+        movedBy(ends[k].map_from_body.translation() - start_from_first.translation());
+    const Matrix6d turn = turned(start_from_first.linear());
+    covariance =
+        swing * covariance * swing.transpose() + turn * poseCovariance(own[k]) * turn.transpose();
+  }
+  return covariance;
+}
+
+/// By how much the variances of legs must grow so that together they are as certain as the whole.
+double inflation(const Matrix6d& whole, const Matrix6d& legs) {
+  double factor = 1.0;
   for (const int kind : {0, 3})
-    innovation.diagonal().segment<3>(kind).array() +=
-        variationOfTurned(measured.rate.segment<3>(kind), state.covariance.topLeftCorner<3, 3>());
-  const Eigen::Matrix<double, 12, 6> gain = innovation.ldlt().solve(shared.transpose()).transpose();
-  const Eigen::Matrix<double, 12, 1> change = gain * (measured.rate - state.rate);
-  MotionState result;
-  result.map_from_body = retract(state.map_from_body, change.head<6>());
-  result.rate = state.rate + change.tail<6>();
-  result.covariance = state.covariance - gain * shared.transpose();
-  return result;
+    factor = std::max(factor,
+                      whole.block<3, 3>(kind, kind).trace() / legs.block<3, 3>(kind, kind).trace());
+  return factor;
+}
+
+void replaceMotion(const PosePrior& motion, PosePrior& tied, RelativePoseFactor& tie) {
+  const auto pull = [&](const PosePrior& prior) -> Vector6d {
+    return prior.information * difference(tie.first_from_second, prior.map_from_body);
+  };
+  const Vector6d change = pull(motion) - pull(tied);
+  tie.information += motion.information - tied.information;
+  tie.first_from_second = retract(tie.first_from_second, tie.information.ldlt().solve(change));
+  tied = motion;
+}
+
+/// \param end of the leg, in the frame of its keyframe before
+void smoothScans(const OpenPassage::Leg& leg, const MotionState& end, MapState& map) {
+  const auto smoothed = smoothedStates(stepsOf(leg.scans), end);
+  const Matrix6d end_information = inverse(poseCovariance(end));
+  for (Index k = 0; k + 1 < leg.scans.size(); ++k) {
+    if (!leg.scans[k].scan) continue;
+    LocalizedScan& scan = map.scans[*leg.scans[k].scan];
+    scan.keyframe_from_body = smoothed[k].state.map_from_body;
+    const Matrix6d shared = (smoothed[k].by_last * end.covariance).topLeftCorner<6, 6>();
+    const Matrix6d gain = shared * end_information, alone = poseCovariance(smoothed[k].state);
+    scan.open =
+        OpenPose{alone, alone - gain * shared.transpose(), leg.keyframe, end.map_from_body, gain};
+  }
 }
 
 }  // namespace
 
-OpenPassage::OpenPassage(int keyframe, double timestamp, MotionState first_from_body,
-                         PosePrior tied)
-    : keyframe_(keyframe),
-      timestamp_(timestamp),
-      first_from_body_(std::move(first_from_body)),
-      tied_(std::move(tied)) {}
+void settlePassed(std::vector<PassedScan> scans, const PassedScan& known, MapState& map) {
+  scans.push_back(known);
+  const auto smoothed = smoothedStates(stepsOf(scans), known.step.found);
+  for (Index k = 0; k + 1 < scans.size(); ++k) {
+    if (!scans[k].scan) continue;
+    LocalizedScan& scan = map.scans[*scans[k].scan];
+    scan.keyframe_from_body = smoothed[k].state.map_from_body;
+    scan.open.emplace().covariance = poseCovariance(smoothed[k].state);
+  }
+}
+
+void OpenPassage::reach(Leg leg) {
+  later_.clear();
+  legs_.push_back(std::move(leg));
+}
 
 void OpenPassage::follow(const StampedPose& later, const Matrix6d& information) {
   later_.push_back({later, information});
@@ -63,36 +103,75 @@ void OpenPassage::follow(const StampedPose& later, const Matrix6d& information) 
 
 bool OpenPassage::isFollowed() const { return later_.size() >= kEnoughScans; }
 
-PosePrior OpenPassage::smoothed(const FrontendParams& params) const {
-  MotionState both = first_from_body_;
-  if (!later_.empty()) {
-    // Time runs backwards from the last scan to the keyframe.
-    MotionModel back(params);
-    for (auto scan = later_.rbegin(); scan != later_.rend(); ++scan)
-      back.update({-scan->pose.timestamp, scan->pose.map_from_body}, std::nullopt,
-                  scan->information);
-    back.update({-timestamp_, Eigen::Isometry3d::Identity()}, std::nullopt,
-                kExact * Matrix6d::Identity());
-    MotionState out = inFrame(first_from_body_.map_from_body, back.state());
-    out.rate = (-out.rate).eval();
-    both = givenRate(first_from_body_, out);
+/// Of the last keyframe in its own frame, by what followed.
+std::optional<MotionState> OpenPassage::stateAfter(const FrontendParams& params) const {
+  if (later_.empty()) return std::nullopt;
+  // Time runs backwards from the last scan to the keyframe.
+  MotionModel back(params);
+  for (auto scan = later_.rbegin(); scan != later_.rend(); ++scan)
+    back.update({-scan->pose.timestamp, scan->pose.map_from_body}, std::nullopt, scan->information);
+  back.update({-legs_.back().timestamp, Eigen::Isometry3d::Identity()}, std::nullopt,
+              kExact * Matrix6d::Identity());
+  MotionState state = back.state();
+  state.rate = (-state.rate).eval();
+  return state;
+}
+
+/// Of the keyframes, in the frame where the passage starts.
+std::vector<MotionState> OpenPassage::endsOfLegs(const std::optional<MotionState>& after) const {
+  std::vector<MotionStep> chain(1);
+  for (const Leg& leg : legs_) {
+    // The last scan tells of its keyframe by itself, too.
+    const MotionStep& last = leg.scans.back().step;
+    const MotionWay way =
+        wayOf(leg.begins, stepsOf(leg.scans), &leg == &legs_.back() ? last.predicted : last.found);
+    if (&leg == &legs_.front()) {
+      chain.front().found = way.begin;
+      chain.push_back({way.end, way.shared, way.end});
+    } else {
+      chain.push_back(continued(leg.begins, way, chain.back().found));
+    }
   }
-  return {both.map_from_body, inverse(both.covariance.topLeftCorner<6, 6>())};
+  std::vector<const MotionStep*> steps;
+  for (const MotionStep& step : chain) steps.push_back(&step);
+  MotionState last = chain.back().predicted;
+  if (after) last = givenRate(last, inFrame(last.map_from_body, *after));
+  std::vector<MotionState> ends;
+  for (const SmoothedState& smoothed : smoothedStates(steps, last)) ends.push_back(smoothed.state);
+  ends.erase(ends.begin());
+  return ends;
+}
+
+PosePrior OpenPassage::smoothed(const FrontendParams& params) const {
+  const MotionState end = endsOfLegs(stateAfter(params)).back();
+  return {end.map_from_body, inverse(poseCovariance(end))};
 }
 
 void OpenPassage::tighten(const FrontendParams& params, MapState& map) {
-  const auto tie = std::find_if(
-      map.factors.relative_poses.begin(), map.factors.relative_poses.end(),
-      [&](const RelativePoseFactor& f) { return f.second == keyframe_ && !f.is_loop; });
-  if (tie == map.factors.relative_poses.end()) return;
-  const PosePrior motion = smoothed(params);
-  const auto pull = [&](const PosePrior& prior) -> Vector6d {
-    return prior.information * difference(tie->first_from_second, prior.map_from_body);
+  const std::optional<MotionState> after = stateAfter(params);
+  const std::vector<MotionState> ends = endsOfLegs(after);
+  const auto firstFromStart = [&](Index leg) -> Eigen::Isometry3d {
+    return leg > 0 ? ends[leg - 1].map_from_body.inverse() : Eigen::Isometry3d::Identity();
   };
-  const Vector6d change = pull(motion) - pull(tied_);
-  tie->information += motion.information - tied_.information;
-  tie->first_from_second = retract(tie->first_from_second, tie->information.ldlt().solve(change));
-  tied_ = motion;
+  std::vector<MotionState> own;
+  for (Index k = 0; k < legs_.size(); ++k) {
+    own.push_back(legs_[k].scans.back().step.predicted);
+    if (!after) continue;
+    const bool is_last = k + 1 == legs_.size();
+    own.back() = givenRate(own.back(), is_last ? inFrame(own.back().map_from_body, *after)
+                                               : inFrame(firstFromStart(k), ends[k]));
+  }
+  const double factor = inflation(poseCovariance(ends.back()), composed(ends, own));
+  for (Index k = 0; k < legs_.size(); ++k) {
+    smoothScans(legs_[k], own[k], map);
+    const auto tie = std::find_if(
+        map.factors.relative_poses.begin(), map.factors.relative_poses.end(),
+        [&](const RelativePoseFactor& f) { return f.second == legs_[k].keyframe && !f.is_loop; });
+    if (tie == map.factors.relative_poses.end()) continue;
+    const PosePrior motion = {firstFromStart(k) * ends[k].map_from_body,
+                              inverse(factor * poseCovariance(own[k]))};
+    replaceMotion(motion, legs_[k].tied, *tie);
+  }
 }
 
 }  // namespace opp::mapping

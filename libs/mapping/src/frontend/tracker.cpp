@@ -17,13 +17,11 @@
 
 namespace opp::mapping {
 
-Tracker::Tracker(const MapperParams& params)
-    : params_(params), motion_(params.frontend), since_keyframe_(params.frontend) {}
+Tracker::Tracker(const MapperParams& params) : params_(params), motion_(params.frontend) {}
 
 void Tracker::start(const StampedPose& pose,
                     const std::optional<Eigen::Isometry3d>& odom_from_body) {
   motion_.start(pose, odom_from_body);
-  beginAtKeyframe();
   last_scan_ = pose.timestamp;
   follows_ = true;
   surprised_ = false;
@@ -139,13 +137,10 @@ TrackResult Tracker::track(const ScanFeatures& scan,
   }
   lost_.clear();
   // Between keyframes, motion ties what neither planes nor points do.
-  result.predicted = since_keyframe_.predictState(scan.timestamp, odom_from_body);
   result.motion_information = motion_.informationSinceAnchor(scan.timestamp, odom_from_body);
   result.match.point_information += result.motion_information;
-  for (MotionModel* motion : {&motion_, &since_keyframe_}) {
-    motion->update({scan.timestamp, result.match.map_from_body}, odom_from_body,
-                   result.match.information);
-  }
+  motion_.update({scan.timestamp, result.match.map_from_body}, odom_from_body,
+                 result.match.information);
   result.wants_keyframe = wantsKeyframe(result.match, newest);
   return result;
 }

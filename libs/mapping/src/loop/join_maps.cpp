@@ -72,7 +72,10 @@ void appendMap(const Eigen::Isometry3d& map_from_other, MapState&& other, MapSta
     link.first += first_keyframe;
     link.second += first_keyframe;
   }
-  for (LocalizedScan& scan : other.scans) scan.keyframe += first_keyframe;
+  for (LocalizedScan& scan : other.scans) {
+    scan.keyframe += first_keyframe;
+    if (scan.open && scan.open->next >= 0) scan.open->next += first_keyframe;
+  }
   moveAll(other.keyframes, map.keyframes);
   moveAll(other.landmarks.planes, map.landmarks.planes);
   moveAll(other.landmarks.corners, map.landmarks.corners);

@@ -111,7 +111,9 @@ MapState takeKeyframes(const Renumbering& keyframes, MapState& map) {
   }
   for (LocalizedScan scan : map.scans) {
     scan.keyframe = keyframes[Index(scan.keyframe)];
-    if (scan.keyframe >= 0) part.scans.push_back(scan);
+    if (scan.keyframe < 0) continue;
+    if (scan.open && scan.open->next >= 0) scan.open->next = keyframes[Index(scan.open->next)];
+    part.scans.push_back(scan);
   }
   return part;
 }

@@ -41,16 +41,26 @@ bool canFoundMap(const OrientedCloud& cloud, double min_spread) {
   return eigen.eigenvalues()[0] >= min_spread * static_cast<double>(cloud.size());
 }
 
+/// Leaves out scans that motion alone places, and so loosely that their poses would be invented.
+void dropLooseScans(double max_variance, MapState& map) {
+  const auto isLoose = [&](const LocalizedScan& scan) {
+    return scan.open &&
+           viewVariance(scan.open->next < 0 ? scan.open->covariance : scan.open->covariance_between,
+                        map.keyframes[static_cast<std::size_t>(scan.keyframe)]) > max_variance;
+  };
+  map.scans.erase(std::remove_if(map.scans.begin(), map.scans.end(), isLoose), map.scans.end());
+}
+
 }  // namespace
 
 Mapper::Mapper(const MapperParams& params)
-    : params_(params), tracker_(params), loop_closer_(params) {}
+    : params_(params), tracker_(params), loop_closer_(params), passages_(params.frontend) {}
 
 const MapState& Mapper::map() const { return parts_.empty() ? empty_ : parts_.front().map; }
 
 FrameResult Mapper::add(ScanFeatures scan, const std::optional<Eigen::Isometry3d>& odom_from_body) {
   if (!continues_) return begin(std::move(scan), odom_from_body);
-  TrackResult track = tracker_.track(scan, odom_from_body, active());
+  const TrackResult track = tracker_.track(scan, odom_from_body, active());
   FrameResult result{track.localized(), track.wants_keyframe, track.match.overlap, track.match.rms};
   if (!track.localized() && track.outcome != TrackOutcome::kUnobserved) {
     // Once its place is forgotten a body is not looked for any more: nothing is worth waiting for.
@@ -59,16 +69,26 @@ FrameResult Mapper::add(ScanFeatures scan, const std::optional<Eigen::Isometry3d
     return begin(std::move(scan), odom_from_body);
   }
   lost_in_a_row_ = 0;
-  if (track.localized()) {
-    followPassage(scan.timestamp, track.match);
-    if (!track.wants_keyframe) follow(scan, track.match);
-  } else {
-    // A body past a bare wall is followed until it sees again what it knows, or enough of what is
-    // new to go on from there: the map knows how loosely the two are tied, see `finish`.
+  FollowedScan followed = {{scan.timestamp, track.match.map_from_body},
+                           odom_from_body,
+                           track.match.information,
+                           isOpen(track.match),
+                           std::nullopt};
+  // What comes after such a keyframe is matched with it alone: it is put off while the map before
+  // explains most of what is seen.
+  if (followed.is_open && track.match.overlap >= params_.frontend.open_keyframe_overlap)
+    result.is_keyframe = false;
+  // A body past a bare wall is followed until it sees again what it knows, or enough of what is new
+  // to go on from there: the map knows how loosely the two are tied, see `finish`.
+  if (!track.localized())
     result.localized = result.is_keyframe =
-        track.wants_keyframe && canFoundMap(scan.cloud_in_body, params_.loop.min_normal_spread);
+        result.is_keyframe && canFoundMap(scan.cloud_in_body, params_.loop.min_normal_spread);
+  if (result.is_keyframe) {
+    addTracked(std::move(scan), track, std::move(followed));
+    return result;
   }
-  if (result.is_keyframe) addTracked(std::move(scan), track);
+  if (result.localized) followed.scan = follow(scan, track.match);
+  passages_.addScan(followed, active());
   return result;
 }
 
@@ -77,7 +97,7 @@ FrameResult Mapper::begin(ScanFeatures scan,
   // The very first scan of a session founds a map whatever it shows: there is nothing to wait for.
   if (scan.cloud_in_body.size() == 0) return {};
   if (continues_ && !canFoundMap(scan.cloud_in_body, params_.loop.min_normal_spread)) return {};
-  closePassage();
+  if (!parts_.empty()) passages_.end(active());
   MapPart part(next_part_++, params_.loop);
   if (continues_) {
     if (const auto beginning = expectedBeginning(scan, odom_from_body))
@@ -108,7 +128,7 @@ std::optional<ExpectedBeginning> Mapper::expectedBeginning(
       informationIn(last_from_map.linear().transpose(), expected->information)};
 }
 
-int Mapper::insert(ScanFeatures scan, const MatchResult& match) {
+void Mapper::insert(ScanFeatures scan, const MatchResult& match) {
   MapState& map = active();
   const int id = insertKeyframe(std::move(scan), match, params_.primitives.sensor, map);
   const Keyframe& keyframe = map.keyframes.back();
@@ -116,7 +136,6 @@ int Mapper::insert(ScanFeatures scan, const MatchResult& match) {
                        keyframe.features.scan_index, id, Eigen::Isometry3d::Identity()});
   parts_.back().index.add(keyframe.features.primitives_in_body);
   linkKeyframe(local_, match.covariance, params_.loop, map);
-  return id;
 }
 
 void Mapper::settleNewest() {
@@ -127,49 +146,38 @@ void Mapper::settleNewest() {
   local_ = connectedViews(active(), newest, params_.frontend.local_keyframes, params_);
   tracker_.setLocalMap(localMapOf(active(), local_, params_));
   tracker_.correct(active().keyframes.back().map_from_body);
+  passages_.beginAt(tracker_.motion());
 }
 
-void Mapper::follow(const ScanFeatures& scan, const MatchResult& match) {
+bool Mapper::isOpen(const MatchResult& match) const {
+  const MapState& map = parts_.back().map;
+  const int newest = static_cast<int>(map.keyframes.size()) - 1;
+  return viewVariance(covarianceOf(match.information), map.keyframes.back()) >
+         connectedVariance(map, newest, params_);
+}
+
+std::size_t Mapper::follow(const ScanFeatures& scan, const MatchResult& match) {
   MapState& map = active();
   Keyframe& keyframe = map.keyframes.back();
   const Eigen::Isometry3d keyframe_from_body =
       keyframe.map_from_body.inverse() * match.map_from_body;
   map.scans.push_back({scan.timestamp, scan.session, scan.scan_index,
                        static_cast<int>(map.keyframes.size()) - 1, keyframe_from_body});
-  addViews(scan, match.planes, keyframe_from_body, params_.primitives.sensor, params_.planar.cell,
-           keyframe);
+  if (viewVariance(match.covariance, keyframe) <= maxOpenVariance())
+    addViews(scan, match.planes, keyframe_from_body, params_.primitives.sensor, params_.planar.cell,
+             keyframe);
+  return map.scans.size() - 1;
 }
 
-void Mapper::addTracked(ScanFeatures scan, const TrackResult& track) {
-  const double timestamp = scan.timestamp;
+void Mapper::addTracked(ScanFeatures scan, const TrackResult& track, FollowedScan followed) {
   const Eigen::Isometry3d first_from_map = active().keyframes.back().map_from_body.inverse();
-  const int id = insert(std::move(scan), track.match);
-  // The map knows what the scan saw, but not where motion, and the scans since the last keyframe,
-  // had it.
-  if (viewVariance(covarianceOf(track.match.information), active().keyframes.back()) >
-      connectedVariance(active(), id, params_)) {
-    closePassage();
-    passage_.emplace(
-        id, timestamp, inFrame(first_from_map, track.predicted),
-        PosePrior{first_from_map * track.match.map_from_body,
-                  informationIn(first_from_map.linear().transpose(), track.motion_information)});
-    passage_->tighten(params_.frontend, active());
-  }
+  insert(std::move(scan), track.match);
+  followed.scan = active().scans.size() - 1;
+  const PosePrior tied = {
+      first_from_map * track.match.map_from_body,
+      informationIn(first_from_map.linear().transpose(), track.motion_information)};
+  passages_.addKeyframe(followed, tied, active());
   settleNewest();
-}
-
-void Mapper::followPassage(double timestamp, const MatchResult& match) {
-  if (!passage_) return;
-  const Eigen::Isometry3d end_from_map =
-      active().keyframes[static_cast<std::size_t>(passage_->keyframe())].map_from_body.inverse();
-  passage_->follow({timestamp, end_from_map * match.map_from_body},
-                   informationIn(end_from_map.linear().transpose(), match.information));
-  if (passage_->isFollowed()) closePassage();
-}
-
-void Mapper::closePassage() {
-  if (passage_) passage_->tighten(params_.frontend, active());
-  passage_.reset();
 }
 
 double Mapper::maxOpenVariance() const {
@@ -200,7 +208,7 @@ void Mapper::splitParts() {
 }
 
 void Mapper::finish(int threads) {
-  closePassage();
+  if (!parts_.empty()) passages_.end(active());
   for (MapPart& part : parts_) {
     if (levelTies(maxOpenVariance(), params_, part.map)) settleMap(part.map, 1, params_);
   }
@@ -209,6 +217,7 @@ void Mapper::finish(int threads) {
   joinParts(parts_, params_, threads);
   if (tieParts(parts_)) splitParts();
   for (MapPart& part : parts_) {
+    dropLooseScans(maxOpenVariance(), part.map);
     settleMap(part.map, 1, params_);
     if (splitLandmarks(part.map, params_.primitives.sensor, params_.backend) > 0)
       settleMap(part.map, 1, params_);

@@ -36,7 +36,8 @@ struct FrontendParams {
   /// another room of the same kind) agreed with 0.64 of the scan, right ones (a lidar that turns by
   /// 40° from step to step) with 0.72 and more.
   double leap_overlap = 0.68;
-  double keyframe_overlap = 0.8;
+  double keyframe_overlap = 0.9;
+  double open_keyframe_overlap = 0.8;
   double keyframe_rotation = degToRad(25.0);
   int local_keyframes = 15;
 
@@ -94,6 +95,9 @@ struct FrontendParams {
             "body cannot be there"});
     f(p.keyframe_overlap, Field{"keyframe_overlap", "", 0.0, 1.0,
                                 "a scan of which a smaller share agrees becomes a keyframe"});
+    f(p.open_keyframe_overlap,
+      Field{"open_keyframe_overlap", "", 0.0, 1.0,
+            "the same for a scan that leaves its pose open: beyond it, little of the map is used"});
     f(p.keyframe_rotation, Field{"keyframe_rotation", "rad", 0.01, 3.1415,
                                  "and one that looks so much away from the last keyframe"});
     f(p.local_keyframes, Field{"local_keyframes", "", 1, 1000, "keyframes in the local map"});

@@ -28,6 +28,17 @@ struct MotionState {
 /// The same state in another frame.
 MotionState inFrame(const Eigen::Isometry3d& frame_from_map, const MotionState& state);
 
+/// What a body did between two scans: what a smoother needs of each step of the filter.
+struct MotionStep {
+  MotionState predicted;  ///< at the second scan, before it
+  /// Of the state at the first scan (rows) with `predicted` (columns).
+  MotionState::Covariance shared = MotionState::Covariance::Zero();
+  MotionState found;  ///< at the second scan, with it
+};
+
+/// The same step in another frame.
+MotionStep inFrame(const Eigen::Isometry3d& frame_from_map, const MotionStep& step);
+
 /// Predicts the next pose: by the rawlog's odometry where there is one, else by constant velocity.
 ///
 /// A Kalman filter of pose and velocity in (ω, v), see `retract`: a direction that scans do not fix
@@ -45,9 +56,9 @@ class MotionModel {
 
   /// Takes note of the pose of a localized scan. `odom_from_body`: the odometry's pose at that
   /// time. `information`: what the scan says of the pose; a direction without is known as well as
-  /// it was predicted.
-  void update(const StampedPose& pose, const std::optional<Eigen::Isometry3d>& odom_from_body,
-              const Matrix6d& information);
+  /// it was predicted. Before the start, this is the start, and the step is empty.
+  MotionStep update(const StampedPose& pose, const std::optional<Eigen::Isometry3d>& odom_from_body,
+                    const Matrix6d& information);
 
   /// Where the body should be at `timestamp`. Before the start: the identity, nothing known.
   PosePrior predict(double timestamp, const std::optional<Eigen::Isometry3d>& odom_from_body) const;
@@ -85,8 +96,10 @@ class MotionModel {
     Matrix6d rate_covariance = Matrix6d::Zero();
   };
 
-  MotionState carriedByOdometry(double step, const Eigen::Isometry3d& last_from_now) const;
-  MotionState carriedByVelocity(double step) const;
+  MotionStep predictStep(double timestamp,
+                         const std::optional<Eigen::Isometry3d>& odom_from_body) const;
+  MotionStep carriedByOdometry(double step, const Eigen::Isometry3d& last_from_now) const;
+  MotionStep carriedByVelocity(double step) const;
   Vector6d odometryVariance(const Eigen::Isometry3d& first_from_second) const;
   /// Spectral density of the accelerations [rad²/s³, m²/s³].
   Vector6d agility() const;

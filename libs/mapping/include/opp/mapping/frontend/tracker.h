@@ -38,7 +38,6 @@ struct TrackResult {
   TrackOutcome outcome = TrackOutcome::kNoMap;
   bool wants_keyframe = false;  ///< the map would gain by this scan; false if not followed
   MatchResult match;            ///< of the best attempt, also if it was not good enough
-  MotionState predicted;  ///< what motion said before, as certain as relative to that keyframe
   /// What motion since the newest keyframe added to `match.point_information`.
   Matrix6d motion_information = Matrix6d::Zero();
 
@@ -77,15 +76,13 @@ class Tracker {
     follows_ = true;
     motion_.correct(last_pose);
     motion_.setAnchor();
-    beginAtKeyframe();
   }
+
+  /// What is known of how the body moves.
+  const MotionModel& motion() const { return motion_; }
 
  private:
   friend struct StateAccess;  // checkpoints
-  void beginAtKeyframe() {
-    since_keyframe_ = motion_;
-    since_keyframe_.beginAtLastPose();
-  }
   /// \param moved the most that is known of the motion since the last localized scan
   TrackResult localize(const ScanFeatures& scan, const PosePrior& predicted, const PosePrior& moved,
                        const Keyframe& newest) const;
@@ -121,7 +118,6 @@ class Tracker {
 
   MapperParams params_;
   MotionModel motion_;
-  MotionModel since_keyframe_;  ///< the same with poses relative to the newest keyframe
   std::optional<LocalMap> local_map_;
   double last_scan_ = 0.0;         ///< time of the last scan, localized or not [s]
   std::vector<double> intervals_;  ///< between the scans of late [s]

@@ -5,7 +5,7 @@
 #include "opp/mapping/core/map_state.h"
 #include "opp/mapping/core/mapper_params.h"
 #include "opp/mapping/core/trajectory.h"
-#include "opp/mapping/frontend/open_passage.h"
+#include "opp/mapping/frontend/passage_watch.h"
 #include "opp/mapping/frontend/tracker.h"
 #include "opp/mapping/loop/close_loops.h"
 #include "opp/mapping/loop/map_part.h"
@@ -45,11 +45,11 @@ class Mapper {
   /// A scan without samples is not localized.
   FrameResult add(ScanFeatures scan, const std::optional<Eigen::Isometry3d>& odom_from_body);
 
-  /// Lets floors be level beyond what ties maps loosely, takes parts asunder where they are tied so
-  /// loosely that poses would be invented, joins those that are proven to belong together, looks
-  /// whether what joined ties better what was taken asunder, optimizes each as a whole, lets
-  /// scans between keyframes add what they saw, and gives up parts that are too small; to be called
-  /// after the last scan. Same result for every `threads`.
+  /// Lets floors be level beyond what ties maps loosely, takes parts asunder and leaves out scans
+  /// where they are tied so loosely that poses would be invented, joins those that are proven to
+  /// belong together, looks whether what joined ties better what was taken asunder, optimizes each
+  /// as a whole, lets scans between keyframes add what they saw, and gives up parts that are too
+  /// small; to be called after the last scan. Same result for every `threads`.
   void finish(int threads = 1);
 
   /// The parts that stayed apart, after `finish` those with most scans first; empty before the
@@ -64,26 +64,26 @@ class Mapper {
   FrameResult begin(ScanFeatures scan, const std::optional<Eigen::Isometry3d>& odom_from_body);
   std::optional<ExpectedBeginning> expectedBeginning(
       const ScanFeatures& scan, const std::optional<Eigen::Isometry3d>& odom_from_body) const;
-  /// Returns the keyframe's id.
-  int insert(ScanFeatures scan, const MatchResult& match);
+  void insert(ScanFeatures scan, const MatchResult& match);
   /// Optimizes what is around the newest keyframe, looks for loops, and goes on from there.
   void settleNewest();
-  /// The keyframe ends a passage if its scan alone leaves its pose open.
-  void addTracked(ScanFeatures scan, const TrackResult& track);
-  void followPassage(double timestamp, const MatchResult& match);
-  void closePassage();
+  /// Adds a keyframe.
+  void addTracked(ScanFeatures scan, const TrackResult& track, FollowedScan followed);
   /// Keyframes that a map ties no worse than this stay in it, see `tiedSets` [m²].
   double maxOpenVariance() const;
   void splitParts();
-  void follow(const ScanFeatures& scan, const MatchResult& match);
+  /// Adds a scan between keyframes; returns its place in MapState::scans.
+  std::size_t follow(const ScanFeatures& scan, const MatchResult& match);
+  /// Whether the scan alone leaves its pose open.
+  bool isOpen(const MatchResult& match) const;
 
   MapperParams params_;
   Eigen::Isometry3d initial_pose_ = Eigen::Isometry3d::Identity();
   Tracker tracker_;
   LoopCloser loop_closer_;
-  std::vector<MapPart> parts_;          ///< the last one is being built
-  std::vector<int> local_;              ///< keyframes that scans are registered against
-  std::optional<OpenPassage> passage_;  ///< the last one, until enough scans followed
+  std::vector<MapPart> parts_;  ///< the last one is being built
+  PassageWatch passages_;       ///< of the part that is being built
+  std::vector<int> local_;      ///< keyframes that scans are registered against
   MapState empty_;
   bool continues_ = false;
   int lost_in_a_row_ = 0;
