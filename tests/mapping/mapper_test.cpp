@@ -166,15 +166,19 @@ TEST(Mapper, WhatMotionAloneTiesTooLooselyIsNotOneMap) {
     ASSERT_EQ(mapper.parts().size(), 2U) << "seed " << seed;
     std::set<std::size_t> known;
     for (const MapPart& part : mapper.parts()) {
-      const auto errorOf = [&](const LocalizedScan& scan) {
+      const auto errorOf = [&](const LocalizedScan& scan) -> Eigen::Vector3d {
         return (poseOf(part.map, scan) *
                 besideWallWithAStop(static_cast<int>(scan.scan_index)).inverse())
             .translation();
       };
       const Eigen::Vector3d first = errorOf(part.map.scans.front());
       for (const LocalizedScan& scan : part.map.scans) {
-        EXPECT_LT((errorOf(scan) - first).norm(), 0.05)
-            << "seed " << seed << " scan " << scan.scan_index;
+        // Nothing tells of the stop before the scans after it: three standard deviations of what is
+        // kept, see loosest_tie.
+        const auto step = static_cast<int>(scan.scan_index);
+        const bool is_seen = step <= kStops || step >= kFirstAhead;
+        EXPECT_LT((errorOf(scan) - first).norm(), is_seen ? 0.01 : 0.15)
+            << "seed " << seed << " scan " << step;
         known.insert(scan.scan_index);
       }
     }
