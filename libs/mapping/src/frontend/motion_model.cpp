@@ -46,6 +46,8 @@ Vector6d typicalMotion(double seconds, const FrontendParams& params) {
       .cwiseAbs2();
 }
 
+PosePrior MotionState::pose() const { return {map_from_body, inverse(poseCovariance())}; }
+
 MotionState inFrame(const Eigen::Isometry3d& frame_from_map, const MotionState& state) {
   const MotionState::Covariance turns = turnsOfState(frame_from_map);
   return {frame_from_map * state.map_from_body, turned(frame_from_map.linear()) * state.rate,
@@ -79,7 +81,7 @@ MotionStep MotionModel::update(const StampedPose& pose,
   MotionStep step = predictStep(pose.timestamp, odom_from_body);
   MotionState state = step.predicted;
   if (!odom_from_body) learn(state, pose.map_from_body, information);
-  const Matrix6d before = state.covariance.topLeftCorner<6, 6>();
+  const Matrix6d before = state.poseCovariance();
   const Matrix6d before_inverse = inverse(before);
   const Matrix6d after = inverse(before_inverse + information);
   // The rate moves with the pose as far as the two go together.
@@ -106,8 +108,7 @@ void MotionModel::correct(const Eigen::Isometry3d& last_pose) {
 PosePrior MotionModel::predict(double timestamp,
                                const std::optional<Eigen::Isometry3d>& odom_from_body) const {
   if (!started_) return {};
-  const MotionState state = predictState(timestamp, odom_from_body);
-  return {state.map_from_body, inverse(state.covariance.topLeftCorner<6, 6>())};
+  return predictState(timestamp, odom_from_body).pose();
 }
 
 MotionState MotionModel::predictState(
@@ -179,7 +180,7 @@ Eigen::Vector2d MotionModel::unrest() const {
 
 void MotionModel::learn(const MotionState& predicted, const Eigen::Isometry3d& found,
                         const Matrix6d& information) {
-  const Matrix6d expected = predicted.covariance.topLeftCorner<6, 6>();
+  const Matrix6d expected = predicted.poseCovariance();
   const Matrix6d measured = covarianceOf(information);
   const Vector6d error = difference(predicted.map_from_body, found);
   const Eigen::Vector2d share = unrest();
@@ -202,7 +203,7 @@ PosePrior MotionModel::lastPose(double timestamp) const {
   PosePrior prior;
   prior.map_from_body = last_.map_from_body;
   // What was open at the last pose is no better known now.
-  Matrix6d covariance = last_.covariance.topLeftCorner<6, 6>();
+  Matrix6d covariance = last_.poseCovariance();
   covariance.diagonal() += typicalMotion(timestamp - timestamp_, params_);
   prior.information = inverse(covariance);
   return prior;
@@ -226,7 +227,7 @@ void MotionModel::beginAtLastPose() {
 }
 
 void MotionModel::setAnchor() {
-  anchor_ = {timestamp_, last_odom_from_body_, last_.covariance.bottomRightCorner<6, 6>()};
+  anchor_ = {timestamp_, last_odom_from_body_, last_.rateCovariance()};
 }
 
 }  // namespace opp::mapping

@@ -45,19 +45,16 @@ MotionWay inFrame(const Eigen::Isometry3d& frame_from_map, const MotionWay& way)
 /// `before`.
 MotionState learned(const MotionState& state, const MotionState& before, const MotionState& now) {
   const Eigen::Matrix<double, 6, 12> by_state = turnsOfRate(state.rate);
-  const auto rateInformation = [](const MotionState& s) {
-    return inverse(s.covariance.bottomRightCorner<6, 6>());
-  };
   const Eigen::Matrix<double, 12, 6> shared = state.covariance * by_state.transpose();
-  const Matrix6d own = inverse(by_state * shared);
-  const Matrix6d before_information = rateInformation(before),
-                 now_information = rateInformation(now);
+  const Matrix6d covariance = by_state * shared, own = inverse(covariance);
+  const Matrix6d before_information = inverse(before.rateCovariance()),
+                 now_information = inverse(now.rateCovariance());
   const Matrix6d after = inverse(own + now_information - before_information);
   const Vector6d pull =
       now_information * (now.rate - state.rate) - before_information * (before.rate - state.rate);
   const Eigen::Matrix<double, 12, 6> gain = shared * own;
   MotionState result = changedBy(gain * (after * pull), state);
-  result.covariance += gain * (after - inverse(own)) * gain.transpose();
+  result.covariance += gain * (after - covariance) * gain.transpose();
   return result;
 }
 
@@ -66,7 +63,7 @@ MotionState learned(const MotionState& state, const MotionState& before, const M
 MotionState givenRate(const MotionState& state, const MotionState& measured) {
   const Eigen::Matrix<double, 6, 12> by_state = turnsOfRate(measured.rate);
   const Eigen::Matrix<double, 12, 6> shared = state.covariance * by_state.transpose();
-  Matrix6d innovation = by_state * shared + measured.covariance.bottomRightCorner<6, 6>();
+  Matrix6d innovation = by_state * shared + measured.rateCovariance();
   for (const int kind : {0, 3})
     innovation.diagonal().segment<3>(kind).array() +=
         variationOfTurned(measured.rate.segment<3>(kind), state.covariance.topLeftCorner<3, 3>());
@@ -109,9 +106,8 @@ MotionStep continued(const MotionState& begins, const MotionWay& in_first, Motio
   const Eigen::Isometry3d start_from_first = begin.map_from_body;
   const MotionWay way = inFrame(start_from_first, in_first);
   begin = learned(begin, inFrame(start_from_first, begins), way.begin);
-  const Matrix6d rate_information = inverse(way.begin.covariance.bottomRightCorner<6, 6>());
   const Eigen::Matrix<double, 12, 6> by_rate =
-      way.shared.bottomRows<6>().transpose() * rate_information;
+      way.shared.bottomRows<6>().transpose() * inverse(way.begin.rateCovariance());
   Covariance by_begin = by_rate * turnsOfRate(begin.rate);
   by_begin.topLeftCorner<6, 6>() +=
       movedBy(way.end.map_from_body.translation() - start_from_first.translation());
@@ -122,9 +118,8 @@ MotionStep continued(const MotionState& begins, const MotionWay& in_first, Motio
   MotionStep step;
   step.predicted = changedBy(by_rate * rate_off, inFrame(moved, way.end));
   step.shared = begin.covariance * by_begin.transpose();
-  step.predicted.covariance =
-      by_begin * step.shared + way.end.covariance -
-      by_rate * way.begin.covariance.bottomRightCorner<6, 6>() * by_rate.transpose();
+  step.predicted.covariance = by_begin * step.shared + way.end.covariance -
+                              by_rate * way.begin.rateCovariance() * by_rate.transpose();
   step.found = step.predicted;
   return step;
 }

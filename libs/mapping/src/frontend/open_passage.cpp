@@ -27,20 +27,23 @@ std::vector<const MotionStep*> stepsOf(const std::vector<PassedScan>& scans) {
   return steps;
 }
 
-Matrix6d poseCovariance(const MotionState& state) { return state.covariance.topLeftCorner<6, 6>(); }
+/// Of the keyframe where a leg begins. \param ends of all legs, in the frame where the passage
+/// starts
+Eigen::Isometry3d startFromFirst(const std::vector<MotionState>& ends, Index leg) {
+  return leg > 0 ? ends[leg - 1].map_from_body : Eigen::Isometry3d::Identity();
+}
 
 /// What the legs would leave open if they were independent, in the frame where the passage starts.
 /// \param own of each leg alone, in the frame of its first keyframe
 Matrix6d composed(const std::vector<MotionState>& ends, const std::vector<MotionState>& own) {
   Matrix6d covariance = Matrix6d::Zero();
   for (Index k = 0; k < ends.size(); ++k) {
-    const Eigen::Isometry3d start_from_first =
-        k > 0 ? ends[k - 1].map_from_body : Eigen::Isometry3d::Identity();
+    const Eigen::Isometry3d start_from_first = startFromFirst(ends, k);
     const Matrix6d swing =
         movedBy(ends[k].map_from_body.translation() - start_from_first.translation());
     const Matrix6d turn = turned(start_from_first.linear());
     covariance =
-        swing * covariance * swing.transpose() + turn * poseCovariance(own[k]) * turn.transpose();
+        swing * covariance * swing.transpose() + turn * own[k].poseCovariance() * turn.transpose();
   }
   return covariance;
 }
@@ -64,18 +67,24 @@ void replaceMotion(const PosePrior& motion, PosePrior& tied, RelativePoseFactor&
   tied = motion;
 }
 
-/// \param end of the leg, in the frame of its keyframe before
-void smoothScans(const OpenPassage::Leg& leg, const MotionState& end, MapState& map) {
-  const auto smoothed = smoothedStates(stepsOf(leg.scans), end);
-  const Matrix6d end_information = inverse(poseCovariance(end));
-  for (Index k = 0; k + 1 < leg.scans.size(); ++k) {
-    if (!leg.scans[k].scan) continue;
-    LocalizedScan& scan = map.scans[*leg.scans[k].scan];
+/// Places all scans but the last one. \param last of that one, in the frame of the keyframe before
+/// \param next the keyframe that the last one is; −1: it is none
+void smoothScans(const std::vector<PassedScan>& scans, const MotionState& last, int next,
+                 MapState& map) {
+  const std::vector<SmoothedState> smoothed = smoothedStates(stepsOf(scans), last);
+  const PosePrior end = last.pose();
+  for (Index k = 0; k + 1 < scans.size(); ++k) {
+    if (!scans[k].scan) continue;
+    LocalizedScan& scan = map.scans[*scans[k].scan];
     scan.keyframe_from_body = smoothed[k].state.map_from_body;
-    const Matrix6d shared = (smoothed[k].by_last * end.covariance).topLeftCorner<6, 6>();
-    const Matrix6d gain = shared * end_information, alone = poseCovariance(smoothed[k].state);
-    scan.open =
-        OpenPose{alone, alone - gain * shared.transpose(), leg.keyframe, end.map_from_body, gain};
+    OpenPose& open = scan.open.emplace();
+    open.covariance = smoothed[k].state.poseCovariance();
+    if (next < 0) continue;
+    const Matrix6d shared = (smoothed[k].by_last * last.covariance).topLeftCorner<6, 6>();
+    open.next = next;
+    open.keyframe_from_next = end.map_from_body;
+    open.gain = shared * end.information;
+    open.covariance_between = open.covariance - open.gain * shared.transpose();
   }
 }
 
@@ -83,13 +92,7 @@ void smoothScans(const OpenPassage::Leg& leg, const MotionState& end, MapState& 
 
 void settlePassed(std::vector<PassedScan> scans, const PassedScan& known, MapState& map) {
   scans.push_back(known);
-  const auto smoothed = smoothedStates(stepsOf(scans), known.step.found);
-  for (Index k = 0; k + 1 < scans.size(); ++k) {
-    if (!scans[k].scan) continue;
-    LocalizedScan& scan = map.scans[*scans[k].scan];
-    scan.keyframe_from_body = smoothed[k].state.map_from_body;
-    scan.open.emplace().covariance = poseCovariance(smoothed[k].state);
-  }
+  smoothScans(scans, known.step.found, -1, map);
 }
 
 void OpenPassage::reach(Leg leg) {
@@ -143,33 +146,30 @@ std::vector<MotionState> OpenPassage::endsOfLegs(const std::optional<MotionState
 }
 
 PosePrior OpenPassage::smoothed(const FrontendParams& params) const {
-  const MotionState end = endsOfLegs(stateAfter(params)).back();
-  return {end.map_from_body, inverse(poseCovariance(end))};
+  return endsOfLegs(stateAfter(params)).back().pose();
 }
 
 void OpenPassage::tighten(const FrontendParams& params, MapState& map) {
   const std::optional<MotionState> after = stateAfter(params);
   const std::vector<MotionState> ends = endsOfLegs(after);
-  const auto firstFromStart = [&](Index leg) -> Eigen::Isometry3d {
-    return leg > 0 ? ends[leg - 1].map_from_body.inverse() : Eigen::Isometry3d::Identity();
-  };
   std::vector<MotionState> own;
   for (Index k = 0; k < legs_.size(); ++k) {
     own.push_back(legs_[k].scans.back().step.predicted);
     if (!after) continue;
     const bool is_last = k + 1 == legs_.size();
-    own.back() = givenRate(own.back(), is_last ? inFrame(own.back().map_from_body, *after)
-                                               : inFrame(firstFromStart(k), ends[k]));
+    own.back() =
+        givenRate(own.back(), is_last ? inFrame(own.back().map_from_body, *after)
+                                      : inFrame(startFromFirst(ends, k).inverse(), ends[k]));
   }
-  const double factor = inflation(poseCovariance(ends.back()), composed(ends, own));
+  const double factor = inflation(ends.back().poseCovariance(), composed(ends, own));
   for (Index k = 0; k < legs_.size(); ++k) {
-    smoothScans(legs_[k], own[k], map);
+    smoothScans(legs_[k].scans, own[k], legs_[k].keyframe, map);
     const auto tie = std::find_if(
         map.factors.relative_poses.begin(), map.factors.relative_poses.end(),
         [&](const RelativePoseFactor& f) { return f.second == legs_[k].keyframe && !f.is_loop; });
     if (tie == map.factors.relative_poses.end()) continue;
-    const PosePrior motion = {firstFromStart(k) * ends[k].map_from_body,
-                              inverse(factor * poseCovariance(own[k]))};
+    const PosePrior motion = {startFromFirst(ends, k).inverse() * ends[k].map_from_body,
+                              inverse(factor * own[k].poseCovariance())};
     replaceMotion(motion, legs_[k].tied, *tie);
   }
 }

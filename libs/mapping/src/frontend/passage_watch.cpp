@@ -30,8 +30,7 @@ void PassageWatch::addScan(const FollowedScan& scan, MapState& map) {
     return;
   }
   if (scan.scan) {
-    map.scans[*scan.scan].open.emplace().covariance =
-        passed_scan.step.found.covariance.topLeftCorner<6, 6>();
+    map.scans[*scan.scan].open.emplace().covariance = passed_scan.step.found.poseCovariance();
   }
   open_.push_back(std::move(passed_scan));
 }

@@ -97,7 +97,8 @@ struct FrontendParams {
                                 "a scan of which a smaller share agrees becomes a keyframe"});
     f(p.open_keyframe_overlap,
       Field{"open_keyframe_overlap", "", 0.0, 1.0,
-            "the same for a scan that leaves its pose open: beyond it, little of the map is used"});
+            "the same for a scan that leaves its pose open: what comes after such a keyframe is "
+            "matched with it alone"});
     f(p.keyframe_rotation, Field{"keyframe_rotation", "rad", 0.01, 3.1415,
                                  "and one that looks so much away from the last keyframe"});
     f(p.local_keyframes, Field{"local_keyframes", "", 1, 1000, "keyframes in the local map"});

@@ -23,6 +23,11 @@ struct MotionState {
   Eigen::Isometry3d map_from_body = Eigen::Isometry3d::Identity();
   Vector6d rate = Vector6d::Zero();            ///< of (ω, v), in the map's axes [rad/s, m/s]
   Covariance covariance = Covariance::Zero();  ///< of (ω, v, rate)
+
+  Matrix6d poseCovariance() const { return covariance.topLeftCorner<6, 6>(); }
+  Matrix6d rateCovariance() const { return covariance.bottomRightCorner<6, 6>(); }
+  /// What is known of the pose, whatever the rate.
+  PosePrior pose() const;
 };
 
 /// The same state in another frame.
