@@ -2,8 +2,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "frontend/shown_distortion.h"
 
+#include "opp/geometry/median.h"
+
 #include <algorithm>
 #include <cmath>
+#include <utility>
 #include <vector>
 
 namespace opp::mapping {
@@ -39,10 +42,8 @@ SensorModel withShownDistortion(const SensorModel& sensor, const MapState& map) 
     shares.push_back(std::max(0.0, error - factor.effective_samples) / expected);
   }
   if (shares.empty()) return sensor;
-  const auto middle = shares.begin() + static_cast<std::ptrdiff_t>(shares.size() / 2);
-  std::nth_element(shares.begin(), middle, shares.end());
   SensorModel shown = sensor;
-  shown.distortion_quadratic *= std::sqrt(std::min(1.0, *middle));
+  shown.distortion_quadratic *= std::sqrt(std::min(1.0, medianOf(std::move(shares))));
   return shown;
 }
 

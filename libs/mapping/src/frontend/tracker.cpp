@@ -3,6 +3,7 @@
 #include "opp/mapping/frontend/tracker.h"
 
 #include "opp/geometry/constants.h"
+#include "opp/geometry/median.h"
 #include "opp/mapping/registration/align_globally.h"
 
 #include "registration/observability.h"
@@ -54,13 +55,6 @@ double positionVariance(const PosePrior& prior) {
 constexpr std::size_t kIntervals = 15;
 /// A gap begins where so many of the usual intervals are missing.
 constexpr double kSkipped = 2.0;
-
-/// Of at least one value.
-double medianOf(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 /// Standard deviation, in the finest voxels (and for turns the angles they fill at one metre), of a
 /// prior that keeps registration where it begins.

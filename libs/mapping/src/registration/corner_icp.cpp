@@ -2,12 +2,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "opp/mapping/registration/corner_icp.h"
 
+#include "opp/geometry/median.h"
+
 #include <Eigen/Cholesky>
 #include <nanoflann.hpp>
 
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <utility>
 
 namespace opp::mapping {
 namespace {
@@ -98,9 +101,7 @@ class Icp {
   double scale() const {
     std::vector<double> sizes;
     for (const Match& m : matches_) sizes.push_back(std::abs(m.residual));
-    const auto middle = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);
-    std::nth_element(sizes.begin(), middle, sizes.end());
-    return std::max(*middle, 1e-9);
+    return std::max(medianOf(std::move(sizes)), 1e-9);
   }
 
   Eigen::MatrixXd normalEquations(Eigen::VectorXd& gradient) const {

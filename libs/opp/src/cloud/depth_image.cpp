@@ -2,11 +2,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cloud/depth_image.h"
 
+#include "opp/geometry/median.h"
+
 #include <Eigen/Geometry>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 #include <vector>
 
 namespace opp {
@@ -55,10 +58,7 @@ double neighborAngle(const PointCloud& cloud, const SensorModel& sensor, int row
     const Eigen::Vector3d ray = a.cast<double>(), next = b.cast<double>();
     angles.push_back(std::atan2(ray.cross(next).norm(), ray.dot(next)));
   }
-  if (angles.empty()) return 0.0;
-  const auto middle = angles.begin() + static_cast<std::ptrdiff_t>(angles.size() / 2);
-  std::nth_element(angles.begin(), middle, angles.end());
-  return *middle;
+  return angles.empty() ? 0.0 : medianOf(std::move(angles));
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include "opp/cloud/oriented_cloud.h"
 
 #include "opp/cloud/even_sampling.h"
+#include "opp/geometry/median.h"
 
 #include "cloud/check_cloud.h"
 #include "cloud/grid_patches.h"
@@ -105,9 +106,7 @@ OrientedCloud denseSurface(const PointCloud& cloud, const SensorModel& sensor,
 /// The middle one of the points' noise levels: most samples need not be closer than it allows.
 double medianSigma(std::vector<float> sigmas) {
   if (sigmas.empty()) return 0.0;
-  const auto middle = sigmas.begin() + static_cast<std::ptrdiff_t>(sigmas.size() / 2);
-  std::nth_element(sigmas.begin(), middle, sigmas.end());
-  return static_cast<double>(*middle);
+  return static_cast<double>(medianOf(std::move(sigmas)));
 }
 
 /// Mean extent of each sample's patches [m].

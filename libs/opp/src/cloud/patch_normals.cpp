@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cloud/patch_normals.h"
 
+#include "opp/geometry/median.h"
+
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -12,13 +14,10 @@ namespace {
 
 /// The median of ratios of a measured to an expected variance, at most 3²: more noise than three
 /// times the model's is taken for structure. 1 if there are none.
-double scaleFrom(std::vector<double>& variance_ratios) {
+double scaleFrom(std::vector<double> variance_ratios) {
   constexpr double kLargest = 9.0;
   if (variance_ratios.empty()) return 1.0;
-  const auto middle =
-      variance_ratios.begin() + static_cast<std::ptrdiff_t>(variance_ratios.size() / 2);
-  std::nth_element(variance_ratios.begin(), middle, variance_ratios.end());
-  return std::min(kLargest, *middle);
+  return std::min(kLargest, medianOf(std::move(variance_ratios)));
 }
 
 }  // namespace
@@ -74,7 +73,7 @@ NoiseScales PatchNormals::measureNoise() {
     if (count < 2.0) continue;
     within.push_back(fitter_.spreadOf(i, plane.normal) * count / (count - 1.0) / expected);
   }
-  return {scaleFrom(between), scaleFrom(within)};
+  return {scaleFrom(std::move(between)), scaleFrom(std::move(within))};
 }
 
 double PatchNormals::noiseCorrelation() const {
