@@ -126,14 +126,15 @@ TEST(JoinParts, BelievesMotionThroughAPartBetween) {
 TEST(JoinParts, APlaceRecognizedWhereItCannotBeProvesNothing) {
   const test::Rectangles room = test::furnishedRoom(1);
   ExpectedBeginning elsewhere;
-  elsewhere.last = {0, 15};
+  elsewhere.last = {0, 27};
   elsewhere.first = {0, 40};
-  elsewhere.last_from_first = poseAt(15).inverse() * poseAt(40);
+  elsewhere.last_from_first = poseAt(27).inverse() * poseAt(40);
   elsewhere.last_from_first.translation().x() += 4.0;
   elsewhere.information = Matrix6d::Identity() / 0.04;
   // The third sees the room too. That the second is another room like it takes away the proof.
   for (const bool repeats : {false, true}) {
-    std::vector<MapPart> parts = {partOf(room, 0, 0), partOf(room, 1, 40), partOf(room, 2, 80)};
+    std::vector<MapPart> parts = {partOf(room, 0, 0, 28), partOf(room, 1, 40, 28),
+                                  partOf(room, 2, 80, 28)};
     if (repeats) parts[1].history.beginnings = {elsewhere};
     joinParts(parts, MapperParams());
     EXPECT_EQ(parts.size(), repeats ? 3U : 1U);
@@ -231,9 +232,29 @@ TEST(JoinParts, OneScanIsEnoughOnlyWhereMotionKnowsNothing) {
   EXPECT_GE(joined, 3);
 }
 
+TEST(JoinParts, FewKeyframesProveAJoinOnlyBetweenSessions) {
+  int joined = 0;
+  for (std::uint64_t room = 1; room <= 5; ++room) {
+    for (const int session : {0, 1}) {
+      std::vector<MapPart> parts = {partOf(test::furnishedRoom(room), 0, 0),
+                                    partOf(test::furnishedRoom(room), 1, 40)};
+      ASSERT_LT(parts[1].map.keyframes.size(), 5U);
+      MapState& later = parts[1].map;
+      for (LocalizedScan& scan : later.scans) scan.session = session;
+      for (Keyframe& keyframe : later.keyframes) keyframe.features.session = session;
+      joinParts(parts, MapperParams());
+      if (session == 0)
+        EXPECT_EQ(parts.size(), 2U) << "room " << room;
+      else
+        joined += parts.size() == 1 ? 1 : 0;
+    }
+  }
+  EXPECT_GE(joined, 3);
+}
+
 TEST(JoinParts, JoinsAlikeForEveryNumberOfThreads) {
   const test::Rectangles room = test::furnishedRoom(3);
-  const std::vector<MapPart> parts = {partOf(room, 0, 0), partOf(room, 1, 40)};
+  const std::vector<MapPart> parts = {partOf(room, 0, 0, 28), partOf(room, 1, 40, 28)};
   std::vector<MapPart> alone = parts;
   joinParts(alone, MapperParams());
   ASSERT_EQ(alone.size(), 1U);

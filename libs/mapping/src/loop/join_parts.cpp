@@ -162,9 +162,9 @@ class Joiner {
                .value_or(1.0) > params_.global_alignment.max_conflict;
   }
 
-  /// What enough keyframes claim of two parts: fewer where motion says the same. One that is
-  /// certain is certain of the kind of place only; within a session, motion must tell that it is
-  /// this one.
+  /// What enough keyframes claim of two parts: fewer where motion says the same, more where it
+  /// could and does not. One that is certain is certain of the kind of place only; within a
+  /// session, motion must tell that it is this one.
   std::vector<PlaceClaim> agreed(Index a, Index b, const std::vector<PlaceClaim>& claims) const {
     const auto agreedBy = [&](int confirmations, bool one_may_do) {
       ClaimPool pool(params_.loop, confirmations, one_may_do);
@@ -172,7 +172,9 @@ class Joiner {
       return pool.agreed();
     };
     const MotionBetween& motion = motionBetween(a, b);
-    std::vector<PlaceClaim> result = agreedBy(params_.loop.join_confirmations, !motion.isKnown());
+    std::vector<PlaceClaim> result = motion.isKnown()
+                                         ? agreedBy(params_.loop.revisit_confirmations, false)
+                                         : agreedBy(params_.loop.join_confirmations, true);
     if (!result.empty()) return result;
     result = agreedBy(params_.loop.confirmations, true);
     if (!result.empty() && !motion.expects(result.front().map_a_from_map_b)) result.clear();

@@ -30,6 +30,7 @@ struct LoopParams {
   double min_overlap = 0.5;
   int confirmations = 2;
   int join_confirmations = 3;
+  int revisit_confirmations = 5;
   double certain_clarity = 0.75;
   int memory = 15;
   double rival_ratio = 2.0;
@@ -75,8 +76,12 @@ struct LoopParams {
                              "different keyframes that must agree before a place is believed"});
     f(p.join_confirmations,
       Field{"join_confirmations", "", 1, 100,
-            "the same before maps are joined where motion does not say the same: of these no "
-            "drift limits where they may be"});
+            "the same before maps of two sessions are joined: no drift limits where they may be"});
+    f(p.revisit_confirmations,
+      Field{
+          "revisit_confirmations", "", 1, 100,
+          "the same before maps of one session are joined where motion does not say the same: the "
+          "body may as well have come to another place of this kind as back"});
     f(p.certain_clarity,
       Field{"certain_clarity", "", 0.0, 1.0,
             "one keyframe is enough if no other pose comes this near (GlobalAlignment::clarity)"});
