@@ -252,6 +252,32 @@ TEST(JoinParts, FewKeyframesProveAJoinOnlyBetweenSessions) {
   EXPECT_GE(joined, 3);
 }
 
+TEST(JoinParts, AScanWhereMotionExpectsItIsBelievedIfThreeKeyframesClaimIt) {
+  MapperParams params;
+  params.loop.certain_clarity = 1.0;
+  int joined = 0;
+  for (std::uint64_t room = 1; room <= 5; ++room) {
+    for (const int scans : {8, 16}) {
+      std::vector<MapPart> parts = {partOf(test::furnishedRoom(room), 0, 0, scans),
+                                    partOf(test::furnishedRoom(room), 1, 40, 1)};
+      ExpectedBeginning beginning;
+      beginning.last = {0, static_cast<std::size_t>(scans - 1)};
+      beginning.first = {0, 40};
+      beginning.last_from_first = poseAt(scans - 1).inverse() * poseAt(40);
+      beginning.information = Matrix6d::Identity() / 0.04;
+      parts[1].history.beginnings = {beginning};
+      const bool is_two = parts[0].map.keyframes.size() == 2;
+      ASSERT_EQ(is_two, scans == 8);
+      joinParts(parts, params);
+      if (is_two)
+        EXPECT_EQ(parts.size(), 2U) << "room " << room;
+      else
+        joined += parts.size() == 1 ? 1 : 0;
+    }
+  }
+  EXPECT_GE(joined, 4);
+}
+
 TEST(JoinParts, JoinsAlikeForEveryNumberOfThreads) {
   const test::Rectangles room = test::furnishedRoom(3);
   const std::vector<MapPart> parts = {partOf(room, 0, 0, 28), partOf(room, 1, 40, 28)};

@@ -18,6 +18,7 @@
 #include <algorithm>
 #include <map>
 #include <optional>
+#include <set>
 #include <utility>
 
 namespace opp::mapping {
@@ -162,6 +163,16 @@ class Joiner {
                .value_or(1.0) > params_.global_alignment.max_conflict;
   }
 
+  /// Whether these are about one keyframe of one of the two parts.
+  static bool isOneView(const std::vector<PlaceClaim>& claims) {
+    std::set<int> of_a, of_b;
+    for (const PlaceClaim& c : claims) {
+      of_a.insert(c.keyframe_a);
+      of_b.insert(c.keyframe_b);
+    }
+    return std::min(of_a.size(), of_b.size()) == 1;
+  }
+
   /// What enough keyframes claim of two parts: fewer where motion says the same, more where it
   /// could and does not. One that is certain is certain of the kind of place only; within a
   /// session, motion must tell that it is this one.
@@ -172,12 +183,16 @@ class Joiner {
       return pool.agreed();
     };
     const MotionBetween& motion = motionBetween(a, b);
-    std::vector<PlaceClaim> result = motion.isKnown()
-                                         ? agreedBy(params_.loop.revisit_confirmations, false)
-                                         : agreedBy(params_.loop.join_confirmations, true);
+    if (!motion.isKnown()) return agreedBy(params_.loop.join_confirmations, true);
+    std::vector<PlaceClaim> result = agreedBy(params_.loop.revisit_confirmations, false);
     if (!result.empty()) return result;
     result = agreedBy(params_.loop.confirmations, true);
-    if (!result.empty() && !motion.expects(result.front().map_a_from_map_b)) result.clear();
+    // A part of one keyframe is one view, and several that look there next to each other see it
+    // alike: where motion could tell and leaves much open, more of them must.
+    if (!result.empty() &&
+        (!motion.expects(result.front().map_a_from_map_b) ||
+         (isOneView(result) && agreedBy(params_.loop.join_confirmations, true).empty())))
+      result.clear();
     return result;
   }
 
