@@ -75,8 +75,10 @@ struct LoopParams {
     f(p.confirmations, Field{"confirmations", "", 1, 100,
                              "different keyframes that must agree before a place is believed"});
     f(p.join_confirmations,
-      Field{"join_confirmations", "", 1, 100,
-            "the same before maps of two sessions are joined: no drift limits where they may be"});
+      Field{
+          "join_confirmations", "", 1, 100,
+          "the same before maps of two sessions are joined, as no drift limits where they may be, "
+          "or a map of one keyframe with another"});
     f(p.revisit_confirmations,
       Field{
           "revisit_confirmations", "", 1, 100,
