@@ -211,6 +211,11 @@ TEST(JoinParts, AShortPartJoinsALongOneWhicheverCameFirst) {
   }
 }
 
+void moveToSession(int session, MapPart& part) {
+  for (LocalizedScan& scan : part.map.scans) scan.session = session;
+  for (Keyframe& keyframe : part.map.keyframes) keyframe.features.session = session;
+}
+
 TEST(JoinParts, OneScanIsEnoughOnlyWhereMotionKnowsNothing) {
   MapperParams params;
   params.loop.certain_clarity = 0.4;  // these rooms look alike from two sides but for the furniture
@@ -220,8 +225,7 @@ TEST(JoinParts, OneScanIsEnoughOnlyWhereMotionKnowsNothing) {
       // A room, and one of the same kind as far as a scan of each tells.
       std::vector<MapPart> parts = {partOf(test::furnishedRoom(room), 0, 0, 1),
                                     partOf(test::furnishedRoom(room), 1, 2, 1)};
-      MapState& later = parts[1].map;
-      later.scans.front().session = later.keyframes.front().features.session = session;
+      moveToSession(session, parts[1]);
       joinParts(parts, params);
       if (session == 0)
         EXPECT_EQ(parts.size(), 2U) << "room " << room;
@@ -239,9 +243,7 @@ TEST(JoinParts, FewKeyframesProveAJoinOnlyBetweenSessions) {
       std::vector<MapPart> parts = {partOf(test::furnishedRoom(room), 0, 0),
                                     partOf(test::furnishedRoom(room), 1, 40)};
       ASSERT_LT(parts[1].map.keyframes.size(), 5U);
-      MapState& later = parts[1].map;
-      for (LocalizedScan& scan : later.scans) scan.session = session;
-      for (Keyframe& keyframe : later.keyframes) keyframe.features.session = session;
+      moveToSession(session, parts[1]);
       joinParts(parts, MapperParams());
       if (session == 0)
         EXPECT_EQ(parts.size(), 2U) << "room " << room;

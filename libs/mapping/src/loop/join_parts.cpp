@@ -18,7 +18,6 @@
 #include <algorithm>
 #include <map>
 #include <optional>
-#include <set>
 #include <utility>
 
 namespace opp::mapping {
@@ -163,14 +162,14 @@ class Joiner {
                .value_or(1.0) > params_.global_alignment.max_conflict;
   }
 
-  /// Whether these are about one keyframe of one of the two parts.
+  /// Whether these, at least one, are about one keyframe of one of the two parts.
   static bool isOneView(const std::vector<PlaceClaim>& claims) {
-    std::set<int> of_a, of_b;
-    for (const PlaceClaim& c : claims) {
-      of_a.insert(c.keyframe_a);
-      of_b.insert(c.keyframe_b);
-    }
-    return std::min(of_a.size(), of_b.size()) == 1;
+    const auto allShare = [&](int PlaceClaim::*keyframe) {
+      return std::all_of(claims.begin(), claims.end(), [&](const PlaceClaim& c) {
+        return c.*keyframe == claims.front().*keyframe;
+      });
+    };
+    return allShare(&PlaceClaim::keyframe_a) || allShare(&PlaceClaim::keyframe_b);
   }
 
   /// What enough keyframes claim of two parts: fewer where motion says the same, more where it
@@ -189,10 +188,9 @@ class Joiner {
     result = agreedBy(params_.loop.confirmations, true);
     // A part of one keyframe is one view, and several that look there next to each other see it
     // alike: where motion could tell and leaves much open, more of them must.
-    if (!result.empty() &&
-        (!motion.expects(result.front().map_a_from_map_b) ||
-         (isOneView(result) && agreedBy(params_.loop.join_confirmations, true).empty())))
-      result.clear();
+    if (!result.empty() && isOneView(result))
+      result = agreedBy(params_.loop.join_confirmations, true);
+    if (!result.empty() && !motion.expects(result.front().map_a_from_map_b)) result.clear();
     return result;
   }
 
